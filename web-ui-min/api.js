@@ -27,6 +27,8 @@ export const logout = () => ask('POST', 'logout');
 export const place = (id, rect) => ask('PUT', `${session(id)}/placement`, { rect });
 export const raise = id => ask('POST', `${session(id)}/raise`);
 export const lower = id => ask('POST', `${session(id)}/lower`);
+/** `wanted`: {on, separation, distance} in percent and the program's units. */
+export const setStereo = (id, wanted) => ask('POST', `${session(id)}/stereo`, wanted);
 /** Answers once it is closed, which a program may take its time for. */
 export const close = id => ask('DELETE', session(id));
 

@@ -12,6 +12,7 @@ import { LivePicture } from './live_picture.js';
 import { mayChange, mayOperate, Rates, tileSkew, tileState, windowsOf } from './model.js';
 import { Mover } from './mover.js';
 import { showRoom } from './room.js';
+import { StereoControl, stereoText } from './stereo.js';
 import { showTables } from './tables.js';
 import { WallPicture } from './wall_picture.js';
 import { WallView } from './wall_view.js';
@@ -42,6 +43,11 @@ const view = new WallView({
   refused: window =>
       showProblem(new Error(`You may not change ${window.label}: your role is ${who?.role ?? 'not known'}`)),
 });
+const stereo = new StereoControl(
+    ({ label, session: { id } }, wanted) => run(() => api.setStereo(id, wanted), () => {
+      const said = stereoText({ stereo: wanted.on ? wanted : null });
+      return `${label}: ${said ?? 'both eyes see the same'}`;
+    }), showProblem);
 let livePicture;  // once walld has said who watches
 function watchLive() {
   livePicture ??= new LivePicture(picture, isLive => {
@@ -100,6 +106,7 @@ function showTools() {
   const window = windows.find(({ id }) => id === selected);
   setText(get('selected'), window ? `${window.id} ${window.label}` : 'No window is selected');
   for (const id of ['raise', 'lower', 'close']) get(id).disabled = !window?.mayChange;
+  stereo.show(status.tiles, window);
 }
 
 // ---- the wall's status ----

@@ -4,6 +4,7 @@
 import { get, rows } from './dom.js';
 import { placeText } from './geometry.js';
 import { trafficOf } from './model.js';
+import { stereoText } from './stereo.js';
 
 const kMissing = '–';
 const number = (value, unit = '') =>
@@ -26,8 +27,9 @@ function age(ms) {
   return ms < 10000 ? `${(ms / 1000).toFixed(1)} s` : `${(ms / 1000).toFixed(0)} s`;
 }
 
-function windowState({ session, moving, swap_timeouts: timeouts }) {
+function windowState({ session, moving, views, swap_timeouts: timeouts }) {
   const parts = [session.fault && `fault: ${session.fault}`, session.held && 'held', moving && 'moving',
+      stereoText(session), views === 'flat' && 'shown flat: its camera is not known',
       timeouts > 0 && `frames that did not wait for a slow node: ${timeouts}`];
   return parts.filter(Boolean).join(', ') || 'runs';
 }

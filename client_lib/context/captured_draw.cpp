@@ -53,7 +53,7 @@ public:
 
     void send() {
         c_.session().draw(
-            c_.draw_source(), Drawn::anywhere(), needs_of_geometry(c_.state),
+            c_.draw_source(), Drawn::anywhere(c_.placing().projection), needs_of_geometry(c_.state),
             [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
             [&](wire::PackBuffer& buffer) {
                 glapi::pack::DrawCaptured(buffer, input_.id, draw_.capture->id, draw_.mode, draw_.stream,

@@ -164,10 +164,12 @@ const Placing& Context::placing() {
 void Context::place(glapi::LinkedPosition& position, GLint attribute) {
     placing_ = {false, 0, true, glstate::unknown_projection(), true};
     const auto* transform = position.transform(state.matrix.modelview, state.matrix.projection);
-    if (transform == nullptr || attribute < 0) return;
-    placing_ = {true, static_cast<std::uint32_t>(attribute), transform->homogeneous(),
-                make_projection(projection_, *transform, position.program().depth), transform->steady()};
-    glstate::set_camera(placing_.projection, position.camera(state.matrix.projection));
+    if (transform != nullptr && attribute >= 0)
+        placing_ = {true, static_cast<std::uint32_t>(attribute), transform->homogeneous(),
+                    make_projection(projection_, *transform, position.program().depth), transform->steady()};
+    glstate::Projection& projection = placing_.projection;
+    glstate::set_camera(projection, position.camera(state.matrix.projection));
+    projection.unknown_elsewhere = projection.unknown_elsewhere || position.camera_is_named();
 }
 
 void Context::forget_object(ClientName gone) {
@@ -228,7 +230,8 @@ void Context::submit_geometry() {
     const bool known = !shades_vertices() || places_packed_vertices();
     const auto submit = [&] {
         const bool somewhere = known && captures->now == nullptr;  // what is captured is captured everywhere
-        session_->submit_block(draw_source(), packer, somewhere ? placing().projection : glstate::unknown_projection());
+        const glstate::Projection& placed = placing().projection;
+        session_->submit_block(draw_source(), packer, somewhere ? placed : glstate::unknown_projection(placed.camera));
     };
     if (!captures->captures() && !state.local.rasterizer_discard) return submit();
     const glstate::State before = state;

@@ -110,7 +110,8 @@ void call_run(Context& c, const ListRun& run) {
         std::vector<Node*> reached;
         const bool somewhere = bounded && c.captures->now == nullptr;
         c.session().draw(
-            c.draw_source(), somewhere ? Drawn(placing.projection, run.box) : Drawn::anywhere(), needs_of_run(c, run),
+            c.draw_source(), somewhere ? Drawn(placing.projection, run.box) : Drawn::anywhere(placing.projection),
+            needs_of_run(c, run),
             [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session().nodes(), node, buffer, run); },
             [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
             [&](Node& node) {

@@ -279,7 +279,8 @@ void NodeDraw::send() {
 /// What is captured is captured everywhere.
 void NodeDraw::send_once() {
     const bool bounded = bounded_ && c_.captures->now == nullptr;
-    const Drawn drawn = bounded ? Drawn(placing_.projection, known_->box, draw_.mode) : Drawn::anywhere();
+    const glstate::Projection& by = placing_.projection;
+    const Drawn drawn = bounded ? Drawn(by, known_->box, draw_.mode) : Drawn::anywhere(by);
     c_.session().draw(
         c_.draw_source(), drawn, needs(), [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
         [&](wire::PackBuffer& buffer) { pack(buffer); },

@@ -36,7 +36,7 @@ void BlockSender::run() {
     before_drawing(followers_, source_);
     const bool everywhere =
         options().broadcast || glstate::counts_primitives(source_.state) || source_.objects.writes();
-    source_.draw.note_camera(&projection_, &packer_.block_box());
+    source_.draw.note_camera(projection_, &packer_.block_box());
     scratch_.sight.aim(projection_, source_.draw.views());
     const Reach box = everywhere ? Reach() : scratch_.sight.of(packer_.block_box());
     kept_ = followers_.hidden.begin_keeping(source_, box.window);

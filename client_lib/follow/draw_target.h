@@ -67,8 +67,8 @@ public:
     std::span<const geom::EyeView> offered_views() const {
         return surface_ ? std::span<const geom::EyeView>(surface_->views.offered) : std::span<const geom::EyeView>();
     }
-    /// Vertices in this box are drawn by this projection; null: by none that is known.
-    void note_camera(const glstate::Projection* projection, const geom::Box* box) const {
+    /// Vertices in this box, where one is known, are drawn by this projection.
+    void note_camera(const glstate::Projection& projection, const geom::Box* box) const {
         if (surface_ && surface_->views.wanted()) surface_->views.note(projection, box);
     }
     /// The surface whose hidden part may be kept instead of being drawn; null: there is no such part, or no target.

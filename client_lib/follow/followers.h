@@ -73,7 +73,7 @@ void draw_on(const Followers& followers, const DrawSource& source, const Drawn& 
              Before&& before, Pack&& pack, After&& after) {
     if (!source.draw) return;
     const bool everywhere = options().broadcast || glstate::counts_primitives(source.state) || source.objects.writes();
-    if (drawn.vertices) source.draw.note_camera(drawn.projection, drawn.box);
+    if (drawn.seen_by != nullptr) source.draw.note_camera(*drawn.seen_by, drawn.box);
     const Reach reach = everywhere ? Reach() : reach_of(followers, source, drawn);
     before_drawing(followers, source);
     const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {

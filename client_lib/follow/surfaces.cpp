@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "client_lib/follow/draw_target.h"
+#include "client_lib/process/log.h"
+#include "client_lib/process/options.h"
 #include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
@@ -106,6 +108,11 @@ void Surfaces::begin_frame(ClientSurface& surface) {
     follow_window(surface);
     if (surface.drawn) return;
     if (surface.views.finish_frame() || recorded_otherwise(surface)) look_otherwise(surface);
+    if (!options().cameras.empty() && surface.views.stays_flat())
+        complain_once(
+            "most of what is drawn goes through no uniform that WALLGL_CAMERA names and that holds a perspective: "
+            "tiles that look elsewhere show the program flat",
+            "camera");
 }
 
 void Surfaces::adopt_placements() {

@@ -30,7 +30,7 @@ void Sight::aim(const glstate::Projection& own, std::span<const SurfaceView> vie
         views_.clear();
         return;
     }
-    sees_all_ = own.by_shader && own.camera == glstate::Mat4{};
+    sees_all_ = own.anywhere_in_views();
     if (own.camera != camera_ || !std::ranges::equal(views, views_)) {
         camera_ = own.camera;
         views_.assign(views.begin(), views.end());

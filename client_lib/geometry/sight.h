@@ -22,11 +22,11 @@ struct Drawn {
     Drawn(std::nullopt_t) {}                                         // NOLINT: as those
     /// Primitives in a box, of one mode if it is given.
     Drawn(const glstate::Projection& by, const geom::Box& around, std::optional<GLenum> primitives = {})
-        : projection(&by), box(&around), mode(primitives), vertices(true) {}
-    /// Vertices that a shader puts anywhere.
-    static Drawn anywhere() {
+        : projection(&by), box(&around), mode(primitives), seen_by(&by) {}
+    /// Vertices that lie anywhere; `by` says what camera draws them, and nothing of where.
+    static Drawn anywhere(const glstate::Projection& by) {
         Drawn out{std::nullopt};
-        out.vertices = true;
+        out.seen_by = &by;
         return out;
     }
 
@@ -34,7 +34,7 @@ struct Drawn {
     const glstate::Projection* projection = nullptr;  ///< null: `rect` holds
     const geom::Box* box = nullptr;
     std::optional<GLenum> mode;
-    bool vertices = false;  ///< not by a rectangle; where `projection` is null, by none that is known
+    const glstate::Projection* seen_by = nullptr;  ///< whose camera draws them; null: they are no vertices
 };
 
 class Sight {
@@ -67,8 +67,7 @@ private:
     const glstate::Projection* own_ = nullptr;
     std::vector<Through> through_;  ///< by view
     std::vector<std::optional<PixelRect>> rects_;
-    /// A shader of which no camera is known, and which may use matrices of fixed function, which the views change.
-    bool sees_all_ = false;
+    bool sees_all_ = false;  // Projection::anywhere_in_views()
     // What `through_[].change` was made of.
     glstate::Mat4 camera_{};
     std::vector<SurfaceView> views_;

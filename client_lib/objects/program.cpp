@@ -8,6 +8,7 @@
 
 #include "client_lib/objects/blend_support.h"
 #include "client_lib/objects/texture.h"
+#include "client_lib/process/options.h"
 #include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
@@ -203,8 +204,9 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     }
     made->reads_numbers_ = counts_primitives || find_input(made->attributes, "gl_VertexID") != nullptr;
     made->stamp = made->last_change = next_stamp();
-    // In parts of a draw primitives would have other numbers.
-    if (!counts_primitives && !made->touches_memory()) made->follow_position(std::move(reflection.position));
+    // In parts of a draw primitives would have other numbers; the camera may be named all the same.
+    if (counts_primitives) reflection.position.steps.clear();
+    if (!made->touches_memory()) made->follow_position(std::move(reflection.position));
     made->check_samplers();
     return made;
 }
@@ -218,8 +220,8 @@ void Executable::follow_position(glapi::PositionProgram position) {
         if (wanted.element >= static_cast<std::uint32_t>(found->size)) return;
         locations.push_back(static_cast<std::uint32_t>(found->location) + wanted.element);
     }
-    if (!position.known()) return;
-    position_attribute_ = position.attribute == "gl_Vertex" ? 0 : attribute_location_of(position.attribute);
+    if (position.known())
+        position_attribute_ = position.attribute == "gl_Vertex" ? 0 : attribute_location_of(position.attribute);
     position_ = {std::move(position), std::move(locations)};
     for (const Uniform& uniform : uniforms)
         if (uniform.location >= 0)
@@ -419,6 +421,7 @@ glapi::ProgramDefinition Program::definition() const {
     out.outputs = output_bindings;
     out.feedback = feedback;
     out.separable = separable;
+    out.cameras = options().cameras;
     return out;
 }
 

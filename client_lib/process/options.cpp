@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "client_lib/process/log.h"
+#include "common/base/camera_names.h"
+
 namespace wall::client {
 namespace {
 
@@ -16,12 +19,25 @@ Coding coding() {
     return is("WALLGL_CODING", "0") ? Coding::never : is("WALLGL_CODING", "1") ? Coding::always : Coding::measured;
 }
 
+std::vector<std::string> cameras() {
+    const char* text = secure_getenv("WALLGL_CAMERA");
+    if (text == nullptr || *text == 0) return {};
+    auto names = camera_names_of_text(text);
+    if (!names) complain_once("WALLGL_CAMERA has something that is no name of a uniform, and is not heeded", "camera");
+    return names ? *std::move(names) : std::vector<std::string>();
+}
+
 }  // namespace
 
 const Options& options() {
-    static const Options read{is("WALLGL_BROADCAST", "1"), is("WALLGL_IDEAL", "1"), is("WALLGL_SHOWN_ONLY", "1"),
-                              !is("WALLGL_RING", "0"), coding()};
-    return read;
+    // Never destroyed: programs draw while they exit.
+    static const auto* const read = new Options{is("WALLGL_BROADCAST", "1"),
+                                                is("WALLGL_IDEAL", "1"),
+                                                is("WALLGL_SHOWN_ONLY", "1"),
+                                                !is("WALLGL_RING", "0"),
+                                                coding(),
+                                                cameras()};
+    return *read;
 }
 
 }  // namespace wall::client

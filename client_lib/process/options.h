@@ -2,6 +2,9 @@
 // The environment variables that change how the client library works, read once (docs/client-library.md lists them).
 #pragma once
 
+#include <string>
+#include <vector>
+
 namespace wall::client {
 
 /// Whether what goes to nodes of other machines is coded (common/wire/history_coder.h).
@@ -14,6 +17,7 @@ struct Options {
     bool ring = true;          ///< WALLGL_RING=0: no shared memory with nodes of this machine, sockets only
     Coding coding =
         Coding::measured;  ///< WALLGL_CODING=0: never, 1: always; else where the link is measured to be slow
+    std::vector<std::string> cameras = {};  ///< WALLGL_CAMERA: uniforms that may be a program's camera
 };
 
 const Options& options();

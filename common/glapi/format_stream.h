@@ -43,6 +43,7 @@ public:
                 std::uint32_t{step.rows} << 16);
             put(step.operands);
         });
+        put(position.camera ? *position.camera + 1 : std::uint32_t{0});
     }
     template <class T, class Put>
     void list(const std::vector<T>& items, Put&& put_item) {
@@ -95,6 +96,7 @@ public:
             return PositionStep{static_cast<PositionOp>(head & 0xff), static_cast<std::uint8_t>(head >> 8),
                                 static_cast<std::uint8_t>(head >> 16), words()};
         });
+        if (const std::uint32_t camera = word(); camera != 0) out.camera = camera - 1;
         if (!is_valid(out)) in_.fail();
         return out;
     }

@@ -37,6 +37,7 @@ public:
     bool run() {
         const auto& steps = program_.steps;
         if (steps.size() > kMostPositionSteps) return false;
+        if (program_.camera && *program_.camera >= program_.uniforms.size()) return false;
         for (const PositionStep& step : steps) {
             const auto moves = moved_by_vertex(step);
             if (!moves || step.columns == 0 || step.columns > 4 || step.rows == 0 || step.rows > 4) return false;
@@ -327,9 +328,7 @@ void for_each_operand(const PositionStep& step, Use&& use) {
     for (std::size_t i = 0; i < step.operands.size(); i += step.op == PositionOp::pick ? 2 : 1) use(step.operands[i]);
 }
 
-}  // namespace
-
-std::optional<LastMatrix> last_matrix(const PositionProgram& program) {
+std::optional<LastMatrix> shown_by_steps(const PositionProgram& program) {
     const auto& steps = program.steps;
     if (steps.empty()) return std::nullopt;
     const auto is_matrix = [](const PositionStep& step) { return step.columns == 4 && step.rows == 4; };
@@ -346,6 +345,13 @@ std::optional<LastMatrix> last_matrix(const PositionProgram& program) {
         return uses == 1 ? std::optional(LastMatrix{false, last.operands[0]}) : std::nullopt;
     const bool projects = last.operands[0] != static_cast<std::uint32_t>(BuiltInMatrix::modelview);
     return projects && uses == 1 ? std::optional(LastMatrix{true, 0}) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<LastMatrix> last_matrix(const PositionProgram& program) {
+    const auto shown = shown_by_steps(program);
+    return shown || !program.camera ? shown : std::optional(LastMatrix{false, *program.camera, true});
 }
 
 LinkedPosition::LinkedPosition(PositionProgram program, std::vector<std::uint32_t> locations)

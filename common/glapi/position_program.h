@@ -56,6 +56,9 @@ struct PositionProgram {
     std::string attribute;            ///< "gl_Vertex", or a generic one
     bool depth = true;                ///< false: z is another function, and 0 here
     std::vector<PositionStep> steps;  ///< the last one is the position; none: it was not recognised
+    /// Of `uniforms`: the matrix that whoever started the program has named (named_camera.h). It counts where the steps
+    /// do not show which is the camera.
+    std::optional<std::uint32_t> camera = {};
     bool operator==(const PositionProgram&) const = default;
     bool known() const { return !steps.empty(); }
 };
@@ -97,8 +100,10 @@ std::optional<PositionTransform> evaluate(const PositionProgram& program, const 
 struct LastMatrix {
     bool built_in = false;      ///< the projection of fixed function
     std::uint32_t uniform = 0;  ///< else: index in PositionProgram::uniforms
+    bool named = false;         ///< that uniform, on somebody's word
+    bool operator==(const LastMatrix&) const = default;
 };
-/// Nothing: it is made in another way. Of a valid program.
+/// As the steps show it; else the one that is named. Nothing: it is made in another way. Of a valid program.
 std::optional<LastMatrix> last_matrix(const PositionProgram& program);
 
 /// The position program of a linked program with the values that its uniforms have now; evaluated when it is asked for
@@ -117,6 +122,8 @@ public:
         std::span<const float, 16> matrix;
     };
     std::optional<Camera> uniform_camera() const;
+    /// That camera is known by its name only.
+    bool camera_is_named() const { return last_ && last_->named; }
     /// The last matrix, of vertices in eye space or before; empty: there is none.
     std::span<const float> camera(std::span<const float, 16> projection) const;
     /// Uniforms have values from now on: those with the locations from `first` on, each of `words_each`.

@@ -152,6 +152,7 @@ std::vector<std::byte> encode(const ProgramDefinition& definition) {
     to.put(definition.position);
     to.put(definition.separable);
     to.list(definition.storage_blocks, [&](const std::string& name) { to.put(name); });
+    to.list(definition.cameras, [&](const std::string& name) { to.put(name); });
     return std::move(to.out);
 }
 
@@ -167,6 +168,7 @@ std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> by
     out.position = from.position();
     out.separable = from.flag();
     from.list(out.storage_blocks, [&] { return from.text(); });
+    from.list(out.cameras, [&] { return from.text(); });
     return if_complete(from, std::move(out));
 }
 

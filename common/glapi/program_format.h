@@ -66,6 +66,7 @@ struct ProgramDefinition {
     PositionProgram position = {};                 ///< as the node that was asked first found it
     bool separable = false;                        ///< it may be one of several that are drawn with together
     std::vector<std::string> storage_blocks = {};  ///< in the order that gives indices
+    std::vector<std::string> cameras = {};         ///< uniforms that may be the camera (named_camera.h)
 };
 
 /// Where a member of a uniform block lies in it (OpenGL 3.1, 2.11.4), or an atomic counter in its buffer, which is no

@@ -112,9 +112,11 @@ void set_camera(Projection& projection, std::span<const float> camera) {
     std::ranges::copy(camera.first(std::min(camera.size(), projection.camera.size())), projection.camera.begin());
 }
 
-Projection unknown_projection() {
+Projection unknown_projection(const Mat4& camera) {
     Projection p;
+    p.camera = camera;
     p.clip_from_object[12] = 10 * kLargestCoordinate;
+    p.unknown_elsewhere = true;
     return p;
 }
 

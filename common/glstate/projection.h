@@ -35,6 +35,11 @@ struct Projection {
     bool by_shader = false;     ///< which rounds in an order of its own, so that what it makes lies about there
     Mat4 camera{};              ///< whose clip coordinates these are (view_change.h); zeros: none that is known
     Mat4 sizes{};               ///< if by_shader: as of glapi::PositionTransform
+    /// Where it is drawn is not known, or what its camera does only by its name.
+    bool unknown_elsewhere = false;
+    /// By another camera it may be anywhere. A shader of which no camera is known may use matrices of fixed function,
+    /// which views change.
+    bool anywhere_in_views() const { return unknown_elsewhere || (by_shader && camera == Mat4{}); }
 };
 
 Projection make_projection(const State& state);
@@ -42,8 +47,8 @@ Projection make_projection(const State& state);
 Projection make_projection(const Projection& fixed_function, const glapi::PositionTransform& transform, bool depth);
 /// `camera`: 16 numbers column by column, or none.
 void set_camera(Projection& projection, std::span<const float> camera);
-/// Every box may be anywhere.
-Projection unknown_projection();
+/// Every box may be anywhere. `camera`: as of a Projection.
+Projection unknown_projection(const Mat4& camera = {});
 Mat4 multiply(const Mat4& a, const Mat4& b);
 
 /// Where the box can be drawn; nothing if that is unknown. Empty behind the eye.

@@ -29,7 +29,8 @@ from xserver import XServer  # noqa: E402
 
 SIDES = 8
 FOV = 45.0  # degrees, of a side
-SUBJECTS = ("around", "atlantis", "solarwinds", "glxgears", "dangerball")
+SUBJECTS = ("around", "atlantis", "solarwinds", "glxgears", "dangerball", "named_camera")
+CAMERAS = {"named_camera": "camera,matrices[1]"}  # uniforms that hold them, where nobody finds them in the shaders
 
 
 def to_single(value: float) -> float:
@@ -65,7 +66,7 @@ class Octagon:
         """And each side's picture of each frame that can be looked at, by (frame, side). Of the first frame nobody
         knows yet that there is a camera."""
         given, sides = Performance(), {}
-        prefix = self.wall.wallrun(rect=self.rect, name=subject.name)
+        prefix = self.wall.wallrun(rect=self.rect, name=subject.name, camera=CAMERAS.get(subject.name, ""))
         play = Play(subject, self._x.environment(vblank_mode="0"), prefix)
         session = Session(self.wall, play.pid)
         for number, frame in enumerate(play.frames()):
@@ -91,13 +92,17 @@ class ViewStage:
             "__GLX_VENDOR_LIBRARY_NAME": "moved", "LD_LIBRARY_PATH": str(library),
             "__EGL_VENDOR_LIBRARY_FILENAMES": str(library / "moved.json"), "GOLDEN_TILE": "0"}
 
+    @staticmethod
+    def _camera(subject: Subject) -> dict[str, str]:
+        return {"GOLDEN_CAMERA": CAMERAS[subject.name]} if subject.name in CAMERAS else {}
+
     def play(self, subject: Subject, side: int) -> Performance:
         width, height = subject.window
         given = Performance()
         with tempfile.NamedTemporaryFile(prefix="golden-share-") as share:
             play = Play(subject, self._environment | {
                 "GOLDEN_TILES": f"{width},{height};0,0,{width},{height}", "GOLDEN_SHARE": share.name,
-                "GOLDEN_VIEW": view_of(side * 360 / SIDES, subject.window)})
+                "GOLDEN_VIEW": view_of(side * 360 / SIDES, subject.window)} | self._camera(subject))
             for frame in play.frames():
                 given.read.append(frame)
                 play.go_on()

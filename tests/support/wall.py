@@ -214,7 +214,8 @@ class Wall:
     # ---- programs ----
 
     def wallrun(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
-                name: str = "", hold: bool = False, parallel: int = 0, stereo: str = "") -> list[str]:
+                name: str = "", hold: bool = False, parallel: int = 0, stereo: str = "",
+                camera: str = "") -> list[str]:
         """The command line that starts a program on this wall."""
         line = [self.client_bin / "wallrun", "--walld", self.address]
         line += ["--rect", ",".join(map(str, rect))] if rect else []
@@ -225,6 +226,7 @@ class Wall:
         line += ["--parallel", parallel] if parallel else []
         return [str(word) for word in (*line, "--", *command)]
 
+        line += ["--camera", camera] if camera else []
     def run(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
             name: str = "", hold: bool = False, parallel: int = 0, env: dict[str, str] | None = None,
             **popen) -> subprocess.Popen:

@@ -211,6 +211,25 @@ TEST(LastMatrix, TakesPartInNothingElse) {
                                          {Op::product, 1, 4, {0, 1}}})));
 }
 
+TEST(LastMatrix, IsTheNamedOneWhereTheStepsShowNone) {
+    PositionProgram unknown;
+    unknown.uniforms = {{"other", 0}, {"camera", 1}};
+    unknown.camera = 1;
+    ASSERT_TRUE(is_valid(unknown));
+    EXPECT_EQ(last_matrix(unknown), (LastMatrix{false, 1, true}));
+    auto shown = chain(1, 0);
+    shown.camera = 0;
+    EXPECT_EQ(last_matrix(shown), (LastMatrix{false, 1, false})) << "what the shader does is believed first";
+    LinkedPosition position(unknown, {3, 8});
+    EXPECT_TRUE(position.camera_is_named());
+    std::vector<std::uint32_t> words(16, bits(2));
+    position.set(8, 16, words);
+    EXPECT_EQ(position.uniform_camera()->location, 8u);
+    EXPECT_EQ(position.transform(kModelview, kProjection), nullptr) << "where vertices lie is not known all the same";
+    unknown.camera = 2;
+    EXPECT_FALSE(is_valid(unknown));
+}
+
 TEST(LastMatrix, HasTheValueThatItWasGiven) {
     LinkedPosition position(chain(1, 0), {7, 9});
     EXPECT_FALSE(position.uniform_camera()) << "it has none yet";

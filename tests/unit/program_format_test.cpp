@@ -19,7 +19,8 @@ const PositionProgram kPosition{
     {{"mvp", 3}},
     "place",
     false,
-    {{PositionOp::uniform, 4, 4, {0}}, {PositionOp::attribute, 1, 4, {}}, {PositionOp::product, 1, 4, {0, 1}}}};
+    {{PositionOp::uniform, 4, 4, {0}}, {PositionOp::attribute, 1, 4, {}}, {PositionOp::product, 1, 4, {0, 1}}},
+    0};
 
 TEST(ProgramFormat, Definition) {
     const ProgramDefinition in{{{GL_VERTEX_SHADER, true, "void main() {}"}, {GL_FRAGMENT_SHADER, false, ""}},
@@ -30,7 +31,8 @@ TEST(ProgramFormat, Definition) {
                                {GL_SEPARATE_ATTRIBS, {"speed", "gl_Position"}},
                                kPosition,
                                true,
-                               {"Sums", "List[0]"}};
+                               {"Sums", "List[0]"},
+                               {"camera", "matrices[1]"}};
     const auto bytes = encode(in);
     const auto out = decode_definition(bytes);
     ASSERT_TRUE(out);
@@ -45,6 +47,7 @@ TEST(ProgramFormat, Definition) {
     EXPECT_EQ(out->position, kPosition);
     EXPECT_TRUE(out->separable);
     EXPECT_EQ(out->storage_blocks, in.storage_blocks);
+    EXPECT_EQ(out->cameras, in.cameras);
     refuses_prefixes(bytes, decode_definition);
 }
 

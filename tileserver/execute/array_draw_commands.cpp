@@ -71,8 +71,7 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
     const LayerGeometry& layer = block_.target->geometry();
     auto projection = this->projection();
     if (!projection) return add(0, all);
-    // A shader of which no camera is known may use matrices of fixed function, which the view changes.
-    if (layer.view && projection->by_shader && projection->camera == glstate::Mat4{}) return add(0, all);
+    if (layer.view && projection->anywhere_in_views()) return add(0, all);
     if (const auto change = layer.view ? glstate::view_change(*layer.view, projection->camera) : std::nullopt)
         projection = glstate::seen(*projection, glstate::narrow(*change));
     const geom::PixelRect area = layer.window_area();

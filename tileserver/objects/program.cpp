@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/glapi/named_camera.h"
 #include "common/glstate/view_change.h"
 #include "tileserver/objects/position_recogniser.h"
 #include "tileserver/objects/program_build.h"
@@ -188,13 +189,15 @@ void Program::follow_position(glapi::PositionProgram position, const std::vector
         locations.push_back(at->location + wanted.element);
     }
     position_ = {std::move(position), std::move(locations)};
-    for (const glapi::PositionStep& step : position_.program().steps) {
-        if (step.op != glapi::PositionOp::uniform) continue;
-        const std::uint32_t location = position_.locations()[step.operands[0]];
+    const auto begin_with = [&](std::uint32_t uniform, std::size_t components) {
+        const std::uint32_t location = position_.locations()[uniform];
         std::array<std::uint32_t, 16> words{};
         driver_.gl().GetUniformfv(name_, locations_[location], reinterpret_cast<GLfloat*>(words.data()));
-        position_.set(location, step.components(), std::span(words).first(step.components()));
-    }
+        position_.set(location, components, std::span(words).first(components));
+    };
+    for (const glapi::PositionStep& step : position_.program().steps)
+        if (step.op == glapi::PositionOp::uniform) begin_with(step.operands[0], step.components());
+    if (const auto& camera = position_.program().camera) begin_with(*camera, 16);
 }
 
 Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, bool wants_reflection,
@@ -214,8 +217,11 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     }
     // Once for all nodes: the others are told by the definition.
     glapi::PositionProgram position = definition->position;
-    if (wants_reflection)
-        position = reflection.position = recognised != nullptr ? *recognised : recognise_position(*definition).program;
+    if (wants_reflection) {
+        position = recognised != nullptr ? *recognised : recognise_position(*definition).program;
+        glapi::name_camera(position, definition->cameras, reflection.uniforms);
+        reflection.position = position;
+    }
     std::vector<glapi::UniformName> names = definition->uniforms;
     std::vector<std::string> blocks = definition->blocks, storage_blocks = definition->storage_blocks;
     if (!named) {
@@ -330,6 +336,7 @@ void Program::look(const std::optional<geom::EyeView>& view) {
     camera_changed_ = false;
     const auto camera = position_.uniform_camera();
     if (!camera || camera->location >= locations_.size()) return;
+    out.unknown_elsewhere = position_.camera_is_named();
     glstate::Mat4 seen;
     std::ranges::copy(camera->matrix, seen.begin());
     if (const auto change = view ? glstate::view_change(*view, seen) : std::nullopt)

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "common/base/camera_names.h"
 #include "common/base/stereo.h"
 #include "common/net/control_client.h"
 
@@ -89,6 +90,12 @@ Result<void> check_stereo(const std::string& stereo, bool parallel) {
                 "': expected PERCENT of the window's width, up to 25, or PERCENT,DISTANCE, for example 1.5,40");
 }
 
+Result<void> check_camera(const std::string& camera) {
+    if (camera.empty() || camera_names_of_text(camera)) return {};
+    return fail("camera '" + camera + "': expected up to " + std::to_string(kMostCameraNames) +
+                " names of uniforms as the shaders have them, for example viewProjection or camera.proj,matrices[1]");
+}
+
 std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files,
                                                    const std::string& library_path) {
     std::map<std::string, std::string> out{
@@ -101,6 +108,7 @@ std::map<std::string, std::string> environment_for(const Launch& launch, const V
     if (!launch.name.empty()) out["WALLGL_NAME"] = launch.name;
     if (launch.hold) out["WALLGL_HOLD"] = "1";
     if (!launch.stereo.empty()) out["WALLGL_STEREO"] = launch.stereo;
+    if (!launch.camera.empty()) out["WALLGL_CAMERA"] = launch.camera;
     return out;
 }
 

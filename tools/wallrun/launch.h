@@ -17,6 +17,7 @@ struct Launch {
     std::string name;
     bool hold = false;
     std::string stereo;  ///< "PERCENT", "PERCENT,DISTANCE" or nothing
+    std::string camera;  ///< names of uniforms, with commas between them, or nothing
 };
 
 /// Where the vendor libraries are: beside this program's own installation.
@@ -33,6 +34,7 @@ Result<void> check_vendor(const VendorFiles& files);
 Result<void> check_walld(const std::string& address, std::string* answer_json = nullptr);
 Result<void> check_rect(const std::string& rect);
 Result<void> check_stereo(const std::string& stereo, bool parallel);
+Result<void> check_camera(const std::string& camera);
 
 /// Variables to set; LD_LIBRARY_PATH goes before what is there (`library_path`).
 std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files,

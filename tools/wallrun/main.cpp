@@ -84,6 +84,10 @@ int main(int argc, char** argv) {
            "the window's width, and from which distance of the program's camera on, in its units, things lie "
            "behind the wall (as `wallctl stereo` has it)")
         ->type_name("PERCENT[,DISTANCE]");
+    app.add_option("--camera", launch.camera,
+                   "for tiles that look elsewhere or are for one eye: the uniform in which the program's shaders have "
+                   "their projection, or projection and view, where that is not found in them")
+        ->type_name("NAME[,NAME...]");
     auto* processes =
         app.add_option("--parallel", parallel, "a parallel program: so many processes draw into its windows together")
             ->type_name("N");
@@ -101,6 +105,7 @@ int main(int argc, char** argv) {
     if (auto good = check_rect(launch.rect); !good) give_up(good.error());
     const bool of_many = parallel > 0 || !group.empty();
     if (auto good = check_stereo(launch.stereo, of_many); !good) give_up(good.error());
+    if (auto good = check_camera(launch.camera); !good) give_up(good.error());
     if (*processes && parallel == 0) give_up({"--parallel: expected at least one process"});
     if (parallel > 0) group = new_group_name(command[0]);
     if (!group.empty()) {

@@ -6,9 +6,11 @@
 #include <cstdlib>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <variant>
 #include <vector>
 
+#include "common/base/camera_names.h"
 #include "common/glstate/view_change.h"
 #include "tests/golden/moved/place.h"
 
@@ -90,6 +92,33 @@ void PopMatrix() {
     if (changes_projection() && own().stack.size() > 1) own().stack.pop_back();
 }
 
+/// The uniforms that are cameras (WALLGL_CAMERA on a wall); "A,B" is two.
+const std::vector<std::string>& cameras() {
+    static const auto names = [] {
+        const char* text = std::getenv("GOLDEN_CAMERA");  // NOLINT: before the program's first thread draws
+        auto read = text != nullptr ? wall::camera_names_of_text(text) : std::vector<std::string>();
+        if (!read) stop("GOLDEN_CAMERA has something that is no name");
+        return *std::move(read);
+    }();
+    return names;
+}
+
+void UniformMatrix4fv(GLint location, GLsizei count, GLboolean transpose, const GLfloat* values) {
+    static const decltype(&glUniformMatrix4fv) set = find("glUniformMatrix4fv");
+    if (transpose != GL_FALSE) stop("glUniformMatrix4fv of transposed matrices");
+    std::vector<Mat4> matrices(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < matrices.size(); ++i) std::copy_n(values + 16 * i, 16, matrices[i].begin());
+    const auto program = static_cast<GLuint>(integer(GL_CURRENT_PROGRAM));
+    for (const std::string& name : cameras()) {
+        const GLint at = mesa().GetUniformLocation(program, name.c_str());
+        if (at < location || at >= location + count) continue;
+        Mat4& camera = matrices[static_cast<std::size_t>(at - location)];
+        if (const auto change = wall::glstate::view_change(*view(), camera))
+            camera = wall::glstate::product(*change, camera);
+    }
+    set(location, count, GL_FALSE, matrices.front().data());
+}
+
 #define GOLDEN_CHANGES(function) \
     if (name == #function) return changing<struct function##Tag>(&function, #function)
 
@@ -114,6 +143,7 @@ void* view_replacement(std::string_view name) {
     GOLDEN_CHANGES(glScaled);
     if (name == "glPushMatrix") return reinterpret_cast<void*>(&PushMatrix);
     if (name == "glPopMatrix") return reinterpret_cast<void*>(&PopMatrix);
+    if (name == "glUniformMatrix4fv" && !cameras().empty()) return reinterpret_cast<void*>(&UniformMatrix4fv);
     return nullptr;
 }
 

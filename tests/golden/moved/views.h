@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A reference of a tile that looks elsewhere or is for one eye (docs/walls.md, "Views", "Stereo"): while GOLDEN_VIEW is
 // set, to the 16 numbers of geom::values_of() of an EyeView, the projection that the program sets becomes that of the
-// view in Mesa. The program's own is kept beside it, for what it multiplies it by, its stack and its questions.
+// view in Mesa. The program's own is kept beside it, for what it multiplies it by, its stack and its questions. So do
+// matrices that it sets as uniforms of the names in GOLDEN_CAMERA.
 #pragma once
 
 #include <string_view>

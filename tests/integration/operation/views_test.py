@@ -144,6 +144,20 @@ class TilesThatLookElsewhere(unittest.TestCase):
         left, right = self.picture("ahead"), self.picture("aside")
         self.assertFalse((left == right).all(), "parts of one picture")
 
+    def test_a_wrong_name_of_its_camera_leaves_it_flat_and_is_said_once(self) -> None:
+        scene = ROOT_BUILD / "tests" / "golden_scenes"
+        for camera, views, said in (("projection,matrices[7]", "flat", 1), ("camera,matrices[1]", "seen", 0)):
+            with self.subTest(camera):
+                app = self.wall.run_line(
+                    self.wall.wallrun(scene, "named_camera", "--frames=1000000", "--read-from=1000000", fullscreen=True,
+                                      camera=camera),
+                    env=self.x.environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                session = self.wall.wait_session(app)
+                self.wall.wait(session, 30)
+                self.until_views(session, views)
+                app.kill()
+                self.assertEqual(app.communicate(timeout=20)[1].count("no uniform that WALLGL_CAMERA names"), said)
+
 
 if __name__ == "__main__":
     unittest.main()

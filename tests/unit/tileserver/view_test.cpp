@@ -99,18 +99,19 @@ protected:
         }
         pack::End(b);
     }
-    void link(const char* vertex) {
-        const glapi::ProgramDefinition definition{
+    void link(const char* vertex, const std::vector<std::string>& cameras = {}) {
+        glapi::ProgramDefinition definition{
             {{GL_VERTEX_SHADER, true, vertex}, {GL_FRAGMENT_SHADER, true, "void main() { gl_FragColor = gl_Color; }"}},
             {},
             {}};
+        definition.cameras = cameras;
         Batch batch;
         pack::ProgramLink(batch.buffer(), RequestId(5), kProgram, encode(definition));
         batch.set<el::current_program>(kProgram.value);
         session_->expect_run(batch);
         const auto reflection = glapi::decode_reflection(session_->replies[RequestId(5)]);
         ASSERT_TRUE(reflection && reflection->linked);
-        ASSERT_TRUE(reflection->position.known());
+        ASSERT_EQ(reflection->position.known(), cameras.empty());
         uniforms_ = *glapi::number_uniforms(reflection->uniforms);
     }
     /// An assembly program, with what a compiler says of its position.
@@ -258,6 +259,27 @@ TEST_F(TilesThatLookElsewhere, AShaderWithOneMatrixForAllIsSeenThroughThem) {
     Batch batch;
     set_matrix(batch, "all", glstate::multiply(kCamera, kModelview));
     draw(batch, nothing, nothing, [&](auto& b) { pack_ring(b); });
+    expect_views(kRounded);
+}
+
+TEST_F(TilesThatLookElsewhere, AShaderThatIsNotFollowedIsSeenThroughTheCameraThatIsNamed) {
+    constexpr const char* kByNumber =
+        "uniform mat4 cameras[2]; uniform mat4 models[2]; void main() { int which = int(gl_Color.b);\n"
+        "gl_Position = cameras[1] * models[which] * gl_Vertex; gl_FrontColor = gl_Color; }";
+    const Mat4 nothing{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    link(kByNumber, {"nowhere", "cameras[1]"});
+    const auto location_of = [&](const char* name) {
+        return std::ranges::find(uniforms_, name, &glapi::UniformName::name)->location;
+    };
+    const auto set = [&](Batch& batch, std::uint32_t location, const Mat4& matrix) {
+        pack::Uniform(batch.buffer(), kProgram, location, GL_FLOAT_MAT4, 1, std::as_bytes(std::span(matrix)));
+    };
+    Batch batch, again;
+    set(batch, location_of("models") + 1, kModelview);
+    set(batch, location_of("cameras") + 1, nothing);
+    draw(batch, nothing, nothing, [&](auto& b) { pack_ring(b); });
+    set(again, location_of("cameras") + 1, kCamera);
+    draw(again, nothing, nothing, [&](auto& b) { pack_ring(b); });
     expect_views(kRounded);
 }
 

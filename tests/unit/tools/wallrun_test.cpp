@@ -60,6 +60,14 @@ TEST(Wallrun, ChecksStereo) {
     EXPECT_FALSE(check_stereo("1.5", true)) << "the processes draw one picture together";
 }
 
+TEST(Wallrun, ChecksCameras) {
+    for (const char* good : {"", "viewProjection", "a.b,c[1]"}) EXPECT_TRUE(check_camera(good)) << good;
+    for (const char* bad : {"a b", ",", "a,", "-"}) EXPECT_FALSE(check_camera(bad)) << bad;
+    Launch launch;
+    launch.camera = "a.b,c[1]";
+    EXPECT_EQ(environment_for(launch, {}, "").at("WALLGL_CAMERA"), "a.b,c[1]");
+}
+
 TEST(Wallrun, ChecksRectangles) {
     for (const char* good : {"", "fullscreen", "0,0,1,1", "-5,0,10,10"}) EXPECT_TRUE(check_rect(good)) << good;
     for (const char* bad : {"1,2,3", "1,2,3,4,5", "1,2,0,4", "1,2,3,-4", "a", "1x2+3+4"})

@@ -21,8 +21,8 @@ the command's group; see common/glapi/decoder.h for what H must offer and for th
 """
 
 
-FRAMING = 4  # of common/wire/frame.h and batch.h; 2: a batch may come in parts; 3: rings, streams that outlive
-             # their connection; 4: coded batches
+FRAMING = 5  # of common/wire/frame.h and batch.h; 2: a batch may come in parts; 3: rings, streams that outlive
+             # their connection; 4: coded batches; 5: programs whose cameras are named
 
 
 def stream_version(ops, elements):

@@ -123,6 +123,15 @@ TEST_F(SightTest, TrianglesAreSeenOneByOne) {
     EXPECT_EQ(nodes_of(layout_, sight_.of(topology, vertices, 3)), (Nodes{1}));
 }
 
+TEST_F(SightTest, WhatIsNotKnownMayBeInAllViews) {
+    sight_.aim(glstate::unknown_projection(own_.camera), layout_.views);
+    EXPECT_EQ(seen_by(box_at(0, 0, -5)), (Nodes{0, 1, 2, 3, 4}));
+    glstate::Projection named = own_;
+    named.unknown_elsewhere = true;
+    sight_.aim(named, layout_.views);
+    EXPECT_EQ(seen_by(box_at(5, 0, 0)), (Nodes{0, 1, 2, 3})) << "in the program's own picture its place is known";
+}
+
 TEST(ViewUseTest, AProgramWithACameraIsSeenAndOthersAreFlat) {
     const glstate::Projection perspective = camera();
     glstate::Projection flat = perspective, shader = perspective;
@@ -132,22 +141,50 @@ TEST(ViewUseTest, AProgramWithACameraIsSeenAndOthersAreFlat) {
     ViewUse use;
     use.offered.emplace_back();
     EXPECT_FALSE(use.finish_frame()) << "nothing was drawn";
-    use.note(&flat);
+    use.note(flat, nullptr);
     EXPECT_FALSE(use.finish_frame()) << "it stays flat";
-    use.note(&flat);
-    use.note(&perspective);
+    use.note(flat, nullptr);
+    use.note(perspective, nullptr);
     EXPECT_TRUE(use.finish_frame());
     EXPECT_TRUE(use.used);
     EXPECT_FALSE(use.finish_frame()) << "a frame without anything tells nothing";
-    use.note(&flat);
-    use.note(&flat);
+    use.note(flat, nullptr);
+    use.note(flat, nullptr);
     EXPECT_FALSE(use.finish_frame()) << "nor does one of titles";
     EXPECT_TRUE(use.used);
-    use.note(&perspective);
-    use.note(&shader);
-    use.note(nullptr);
+    use.note(perspective, nullptr);
+    use.note(shader, nullptr);
+    use.note(glstate::unknown_projection(), nullptr);
     EXPECT_TRUE(use.finish_frame()) << "most of it has no camera that is known";
     EXPECT_FALSE(use.used);
+    use.note(glstate::unknown_projection(perspective.camera), nullptr);
+    EXPECT_TRUE(use.finish_frame()) << "a camera counts also where it is not known what lies where";
+}
+
+TEST(ViewUseTest, AProgramStaysFlatThatShowsNoCameraInManyFrames) {
+    glstate::Projection flat = camera();
+    flat.camera = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    ViewUse use;
+    const auto frames = [&](int count, const glstate::Projection* by) {
+        for (int i = 0; i < count; ++i) {
+            if (by != nullptr) use.note(*by, nullptr);
+            use.finish_frame();
+        }
+    };
+    frames(100, &flat);
+    EXPECT_FALSE(use.stays_flat()) << "no tile looks elsewhere";
+    use.offered.emplace_back();
+    const glstate::Projection perspective = camera(), unknown = glstate::unknown_projection();
+    frames(9, &flat);
+    frames(5, nullptr);
+    EXPECT_FALSE(use.stays_flat());
+    frames(1, &perspective);
+    frames(9, &unknown);
+    EXPECT_FALSE(use.stays_flat()) << "not in a row";
+    frames(1, &unknown);
+    EXPECT_TRUE(use.stays_flat());
+    frames(1, &perspective);
+    EXPECT_FALSE(use.stays_flat());
 }
 
 }  // namespace
