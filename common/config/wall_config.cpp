@@ -21,7 +21,7 @@ bool draws_as(const TileConfig& a, const TileConfig& b) {
 
 bool draws_as(const NodeConfig& a, const NodeConfig& b) {
     return a.name == b.name && a.process == b.process && a.part == b.part && a.backend == b.backend &&
-           a.listen == b.listen &&
+           a.triangle_order == b.triangle_order && a.listen == b.listen &&
            std::ranges::equal(a.tiles, b.tiles, [](const auto& x, const auto& y) { return draws_as(x, y); });
 }
 

@@ -23,6 +23,9 @@ namespace wall::config {
 enum class Backend { egl, osmesa };
 const char* name_of(Backend backend);
 
+/// Whether a node changes the order of triangles where nobody sees it (docs/vertex-data.md, "Order").
+enum class TriangleOrder { automatic, on, off };
+
 /// A window that shows a tile, on an X display of the node's machine.
 struct WindowConfig {
     std::string display;  ///< such as ":0"; empty: DISPLAY in the tileserver's environment
@@ -67,6 +70,7 @@ bool draws_as(const TileConfig& a, const TileConfig& b);
 struct NodeConfig {
     std::string name;
     Backend backend = Backend::egl;
+    TriangleOrder triangle_order = TriangleOrder::automatic;
     net::Address listen;            ///< data streams
     std::vector<TileConfig> tiles;  ///< slot = index
     std::string process{};          ///< the [[node]]'s name, of the tileserver that it is a part of

@@ -112,6 +112,8 @@ public:
     void set_quota(SessionId session, const SessionQuota& quota);
     /// All streams of the session go at once, whatever is left in them.
     void remove_session(SessionId session);
+    /// Whether triangles of meshes that stay are drawn in an order that suits a GPU, where nobody sees it.
+    void set_orders_triangles(bool on);
     void set_tiles(std::vector<Tile> tiles, std::uint32_t background);
     /// Of `held` ones no frame is shown before present(), whether or not somebody coordinates. For sessions that are
     /// `returning` nobody will say present() yet.
