@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What it costs to show a tile of 1080p (docs/walls.md): composing one full window, then the output pass with each of
-// its steps. "as it is" is the composing alone, which every line has; the driver has finished at the end of each.
+// its steps. "as it is" is the composing alone, which every line has, and twice where two eyes see a picture each; the
+// driver has finished at the end of each.
 #include <benchmark/benchmark.h>
 
 #include <functional>
@@ -15,7 +16,7 @@ namespace {
 using namespace bench;
 
 constexpr geom::Rect kTile{0, 0, 1920, 1080};
-constexpr std::uint32_t kSlot = 0;
+constexpr std::uint32_t kSlot = 0, kRightSlot = 1;  ///< the latter of the other eye, where an output shows both
 
 /// A mesh that bends the picture a little.
 geom::Warp bent(std::uint32_t columns, std::uint32_t rows) {
@@ -40,6 +41,27 @@ void color(geom::TileOutput& output) {
 }
 void mesh(geom::TileOutput& output) { output.warp = std::make_shared<const geom::Warp>(bent(33, 19)); }
 
+/// One value for each pixel of the output, as calibration systems write them.
+geom::LightMap::Map map_of(std::uint32_t channels, std::uint8_t least) {
+    geom::LightMap::Map out{
+        static_cast<std::uint32_t>(kTile.width), static_cast<std::uint32_t>(kTile.height), channels, {}};
+    out.values.resize(std::size_t{out.width} * out.height * channels);
+    for (std::size_t i = 0; i < out.values.size(); ++i)
+        out.values[i] = static_cast<std::uint8_t>(least + i / channels % out.width * (255u - least) / out.width);
+    return out;
+}
+geom::LightMap alpha() { return {.share = map_of(1, 40), .lift = {}}; }
+geom::LightMap alpha_and_beta() { return {.share = map_of(3, 40), .lift = map_of(3, 0)}; }
+Change light(geom::LightMap map) {
+    return [map = std::make_shared<const geom::LightMap>(std::move(map))](geom::TileOutput& o) { o.light = map; };
+}
+Change both_eyes(geom::StereoLayout layout) {
+    return [layout](geom::TileOutput& o) {
+        o.stereo = layout;
+        o.right_slot = kRightSlot;
+    };
+}
+
 void show(benchmark::State& state, const Change& change) {
     Node node(To::llvmpipe);
     Client client(node, SessionId(1));
@@ -47,6 +69,7 @@ void show(benchmark::State& state, const Change& change) {
     change(output);
     node.node().tiles = {
         {kSlot, kTile, geom::is_plain(output, kTile) ? nullptr : std::make_shared<const geom::TileOutput>(output)}};
+    if (output.stereo != geom::StereoLayout::none) node.node().tiles.push_back({kRightSlot, kTile, nullptr});
     node.node().present_at_once = true;
     wire::PackBuffer buffer;
     glapi::pack::SurfacePlace(buffer, SurfaceId(1), 2, kTile.width, kTile.height, 0, 0, kTile.width, kTile.height, 0);
@@ -90,6 +113,17 @@ const bool registered = [] {
         {"mesh of 33x19", mesh},
         {"blend", blend},
         {"color", color},
+        {"light map, one value a pixel", light(alpha())},
+        {"light maps, share and lift of each colour", light(alpha_and_beta())},
+        {"mesh and light maps",
+         [maps = light(alpha_and_beta())](geom::TileOutput& o) {
+             mesh(o);
+             maps(o);
+         }},
+        {"both eyes side by side", both_eyes(geom::StereoLayout::side_by_side)},
+        {"both eyes over and under", both_eyes(geom::StereoLayout::over_under)},
+        {"both eyes in rows", both_eyes(geom::StereoLayout::rows)},
+        {"both eyes as anaglyph", both_eyes(geom::StereoLayout::anaglyph)},
         {"mesh, blend and color",
          [](geom::TileOutput& o) {
              mesh(o);

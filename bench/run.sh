@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
-#                                         switch, pack, mesh, buffers, late_node, notice, gpus, views, march, off_wall,
-#                                         traffic, share, transport, coding, fair, streams, codec)
+#                                         order, switch, pack, mesh, buffers, late_node, notice, gpus, views, march,
+#                                         off_wall, traffic, share, transport, coding, fair, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -33,6 +33,8 @@ run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --ben
 run execute "$build/bench/execute_bench" --benchmark_out="$results/execute.json" --benchmark_out_format=json \
   --benchmark_color=false
 run output "$build/bench/output_bench" --benchmark_out="$results/output.json" --benchmark_out_format=json \
+  --benchmark_color=false
+run order "$build/bench/order_bench" --benchmark_out="$results/order.json" --benchmark_out_format=json \
   --benchmark_color=false
 run switch bench/switch.py --json "$results/switch.json"
 run pack bench/pack.py --json "$results/pack.json"

@@ -22,6 +22,7 @@ demo=(
   liblz4-dev libzstd-dev             # frame codecs
   libssl-dev                         # content hashes
   glslang-dev                        # the parser of shaders
+  libmeshoptimizer-dev               # the order of triangles
   libgl1 libegl1 libgl1-mesa-dri libglx-mesa0 libegl-mesa0 libosmesa6
   xvfb xauth procps
   mesa-utils xscreensaver-gl-extra   # glxgears, atlantis

@@ -89,14 +89,25 @@ TileConfig read_tile(TreeReader& read, const toml::table& table, const geom::Vec
 
 bool shows_two_eyes(const TileConfig& tile) { return tile.output.stereo != geom::StereoLayout::none; }
 
+TriangleOrder read_triangle_order(TreeReader& read, const toml::table& table) {
+    const auto text = read.text(table, "triangle_order", "auto");
+    if (text == "auto") return TriangleOrder::automatic;
+    if (text == "on") return TriangleOrder::on;
+    if (text != "off")
+        read.refuse(table.get("triangle_order")->source(),
+                    "'triangle_order' is '" + text + "': expected \"auto\", \"on\" or \"off\"");
+    return TriangleOrder::off;
+}
+
 NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
-    read.only(table, "[[node]]", {"name", "backend", "listen", "gpus", "tile"});
+    read.only(table, "[[node]]", {"name", "backend", "listen", "gpus", "triangle_order", "tile"});
     NodeConfig out;
     out.name = out.process = read.text(table, "name");
     const auto backend = read.text(table, "backend", "egl");
     const auto found = std::ranges::find(kBackends, backend, [](Backend b) { return std::string(name_of(b)); });
     if (found != kBackends.end()) out.backend = *found;
     else read.refuse(table.get("backend")->source(), "'backend' is '" + backend + "': expected \"egl\" or \"osmesa\"");
+    out.triangle_order = read_triangle_order(read, table);
     if (const auto* listen = table.get("listen")) out.listen = read.address(*listen, "'listen'");
     else out.listen = {.path = {}, .host = "127.0.0.1", .port = net::kDefaultDataPort};
     const auto tiles = read.tables(table, "tile", "[[node.tile]]");

@@ -23,6 +23,9 @@ namespace wall::config {
 enum class Backend { egl, osmesa };
 const char* name_of(Backend backend);
 
+/// Whether a node changes the order of triangles where nobody sees it (docs/vertex-data.md, "Order").
+enum class TriangleOrder { automatic, on, off };
+
 /// A window that shows a tile, on an X display of the node's machine.
 struct WindowConfig {
     std::string display;  ///< such as ":0"; empty: DISPLAY in the tileserver's environment
@@ -74,6 +77,7 @@ struct NodeConfig {
     std::vector<TileConfig> tiles;
     std::string process{};   ///< the [[node]]'s name, of the tileserver that it is a part of
     std::uint16_t part = 0;  ///< number among the nodes of that
+    TriangleOrder triangle_order = TriangleOrder::automatic;
     /// That draws its tiles: it is the same for all.
     std::string gpu() const { return tiles.empty() ? "auto" : tiles.front().gpu; }
     /// Null: it has none there.

@@ -146,15 +146,15 @@ def parts_of(window: Rect, tiles: tuple[int, int], tile_size: tuple[int, int]) -
 class WallStage:
     """A wall of `tiles`, just large enough for a subject's window: another one for windows of another size. On one tile
     the window fills it; on several it lies where tile borders cut it at odd places. Each tile has a node, or all have
-    one that draws with `gpus` GPUs."""
+    one that draws with `gpus` GPUs. `triangle_order` is the nodes' in wall.toml."""
 
     SLACK = {(1, 1): (0, 0), (2, 2): (12, 10), (3, 2): (20, 14)}  # pixels of the wall beside the window
 
     def __init__(self, x: XServer, tiles: tuple[int, int], backend: str = "egl", swap_timeout_ms: int = 10000,
-                 gpus: int = 0):
+                 gpus: int = 0, triangle_order: str = ""):
         slack = self.SLACK.get(tiles, (16, 16))
         self._x, self._tiles, self._backend, self._slack = x, tiles, backend, slack
-        self._swap_timeout_ms, self._gpus = swap_timeout_ms, gpus
+        self._swap_timeout_ms, self._gpus, self._triangle_order = swap_timeout_ms, gpus, triangle_order
         self._origin = (slack[0] // 3, slack[1] // 2)
         self._window = WINDOW
         self._wall = self._wall_for(WINDOW)
@@ -171,7 +171,8 @@ class WallStage:
 
     def _wall_for(self, window: tuple[int, int]) -> Wall:
         return Wall(tiles=self._tiles, tile_size=self._tile_size(window), backend=self._backend,
-                    swap_timeout_ms=self._swap_timeout_ms, name="golden", one_node=self._gpus > 0, gpus=self._gpus)
+                    swap_timeout_ms=self._swap_timeout_ms, name="golden", one_node=self._gpus > 0, gpus=self._gpus,
+                    triangle_order=self._triangle_order)
 
     def _fit(self, window: tuple[int, int]) -> None:
         if window == self._window:

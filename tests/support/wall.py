@@ -52,18 +52,20 @@ class Wall:
     """`tiles` are columns and rows, `tile_size` is in pixels. `environment` goes to the daemons, `die_with_parent` ends
     them with the *thread* that starts the wall. `options` and `people` are lines for wall.toml. `windows` is an X
     display on which the tiles are windows, beside each other as on the wall. `tile_keys` are further lines of each tile
-    in wall.toml. `one_node` puts all tiles on one tileserver, which draws with `gpus` GPUs if that is not 0.
+    in wall.toml, `triangle_order` is that of each node. `one_node` puts all tiles on one tileserver, which draws with
+    `gpus` GPUs if that is not 0.
     `client_build` is where wallrun and the vendor library come from, if not from `build` (a sanitizer's library does
     not load into a foreign program)."""
 
     def __init__(self, tiles: tuple[int, int] = (2, 2), tile_size: tuple[int, int] = (512, 384), backend: str = "egl",
                  *, http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, gpus: int = 0,
                  name: str = "test", options: str = "", people: str = "", windows: str = "", tile_keys: str = "",
-                 build: Path | None = None, client_build: Path | None = None, environment: dict[str, str] | None = None,
+                 triangle_order: str = "", build: Path | None = None, client_build: Path | None = None,
+                 environment: dict[str, str] | None = None,
                  die_with_parent: bool = False):
         self.tiles, self.tile_size, self.backend = tiles, tile_size, backend
         self.http, self.swap_timeout_ms, self.name = http, swap_timeout_ms, name
-        self.one_node, self.gpus = one_node, gpus
+        self.one_node, self.gpus, self.triangle_order = one_node, gpus, triangle_order
         self.options, self.people, self.windows, self.tile_keys = options, people, windows, tile_keys
         self.bin = (build or build_folder()) / "bin"
         self.client_bin = (client_build or build or build_folder()) / "bin"
@@ -121,6 +123,7 @@ class Wall:
     def _node(self, name: str, tiles: list[str]) -> str:
         return (f"[[node]]\nname = {_quoted(name)}\nbackend = {_quoted(self.backend)}\n"
                 f"listen = {_quoted(f'unix:{self.folder}/{name}.sock')}\n"
+                + (f"triangle_order = {_quoted(self.triangle_order)}\n" if self.triangle_order else "")
                 + (f"gpus = {self.gpus}\n" if self.gpus else "") + "".join(map(self._tile, tiles)))
 
     def _description(self) -> str:
@@ -223,10 +226,10 @@ class Wall:
         line += ["--name", name] if name else []
         line += ["--hold"] if hold else []
         line += ["--stereo", stereo] if stereo else []
+        line += ["--camera", camera] if camera else []
         line += ["--parallel", parallel] if parallel else []
         return [str(word) for word in (*line, "--", *command)]
 
-        line += ["--camera", camera] if camera else []
     def run(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
             name: str = "", hold: bool = False, parallel: int = 0, env: dict[str, str] | None = None,
             **popen) -> subprocess.Popen:

@@ -76,6 +76,7 @@ public:
     void take_content(const Layer& older);
 
     bool draws_colors() const override;
+    bool has_depth() const override { return format_.depth; }
     /// Textures of the buffers that are drawn to since bind().
     std::vector<GLuint> draw_textures() const;
     /// A rectangle of a colour texture of one sample a pixel as RGBA bytes, bottom row first. Pixel transfer must be

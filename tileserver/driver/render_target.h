@@ -61,6 +61,8 @@ public:
     virtual void bind(GLenum draw_buffer, GLenum read_buffer) = 0;
     /// Whether what is drawn to it as it was bound last may have colours.
     virtual bool draws_colors() const = 0;
+    /// Whether it has a depth buffer.
+    virtual bool has_depth() const = 0;
 
 protected:
     ~RenderTarget() = default;

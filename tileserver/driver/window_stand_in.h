@@ -16,6 +16,7 @@ public:
 
     void bind(GLenum draw_buffer, GLenum read_buffer) override;
     bool draws_colors() const override { return false; }
+    bool has_depth() const override { return false; }
 
 private:
     Driver& driver_;

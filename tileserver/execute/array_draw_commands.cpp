@@ -6,10 +6,12 @@
 
 #include "common/glapi/primitive.h"
 #include "common/glstate/view_change.h"
+#include "tileserver/execute/free_order.h"
 #include "tileserver/objects/assembly_program.h"
 #include "tileserver/objects/buffer.h"
 #include "tileserver/objects/draw_pieces.h"
 #include "tileserver/objects/program.h"
+#include "tileserver/session/shader_memory.h"
 
 namespace wall::tileserver {
 namespace {
@@ -131,13 +133,40 @@ void ArrayDrawCommands::DrawElements(ClientName name, ClientName pieces, GLenum 
     if (input == nullptr || !has_indices(*input, count, type, offset)) return;
     find_runs(pieces, count, mode);
     count_runs();
+    GLuint ordered = 0;
+    if (execution_.node.orders_triangles && draws_in_any_order(mode))
+        ordered = in_order(*input, pieces, {type, offset, static_cast<std::uint32_t>(count), 0});
     const std::size_t one = glstate::index_bytes(type);
     places_.clear();
     for (const GLint first : firsts_)
-        places_.push_back(offset_pointer(offset + static_cast<std::uint64_t>(first) * one));
+        places_.push_back(offset_pointer((ordered != 0 ? 0 : offset) + static_cast<std::uint64_t>(first) * one));
     base_vertices_.assign(places_.size(), base_vertex);
+    if (ordered != 0) execution_.gl.VertexArrayElementBuffer(input->name(), ordered);
     execution_.gl.MultiDrawElementsBaseVertex(mode, counts_.data(), type, places_.data(),
                                               static_cast<GLsizei>(counts_.size()), base_vertices_.data());
+    if (ordered != 0)
+        execution_.gl.VertexArrayElementBuffer(input->name(),
+                                               execution_.session.objects.find<Buffer>(input->indices())->name());
+}
+
+bool ArrayDrawCommands::draws_in_any_order(GLenum mode) const {
+    const glstate::State& state = execution_.context->state;
+    if (mode != GL_TRIANGLES || execution_.modes.mode() != GL_RENDER) return false;
+    if (!order_is_free(state) || !block_.target->has_depth()) return false;
+    bool free = true;
+    for_each_program(execution_.session, state,
+                     [&](const Program& program) { free = free && program.draws_in_any_order(); });
+    return free;
+}
+
+/// As a whole, where all of it is drawn; else each piece for itself.
+GLuint ArrayDrawCommands::in_order(const VertexInput& input, ClientName pieces, const IndexRange& all) const {
+    Buffer* const buffer = execution_.session.objects.find<Buffer>(input.indices());
+    if (buffer == nullptr || counts_.empty()) return 0;
+    IndexRange range = all;
+    const bool whole = counts_.size() == 1 && counts_.front() == static_cast<GLsizei>(all.count);
+    if (!whole) range.step = execution_.session.objects.find<DrawPieces>(pieces)->cut().step;
+    return buffer->in_order(range);
 }
 
 void ArrayDrawCommands::DrawIndices(ClientName name, GLenum mode, GLenum type, std::int32_t base_vertex,

@@ -10,6 +10,7 @@
 
 #include "common/glstate/projection.h"
 #include "tileserver/execute/execution.h"
+#include "tileserver/objects/index_orders.h"
 #include "tileserver/objects/vertex_input.h"
 
 namespace wall::tileserver {
@@ -43,6 +44,11 @@ private:
     void find_runs(ClientName pieces, std::int32_t count, GLenum mode);
     /// Whether all that counts is what a tile shows.
     bool may_be_cut(GLenum mode) const;
+    /// Whether nobody sees in which order the triangles of a draw with the state come.
+    bool draws_in_any_order(GLenum mode) const;
+    /// The driver's buffer in which the indices of the runs lie from its beginning on, in an order that is drawn
+    /// faster; 0: none.
+    GLuint in_order(const VertexInput& input, ClientName pieces, const IndexRange& all) const;
     /// Where vertices go; nothing: a shader puts them anywhere.
     std::optional<glstate::Projection> projection() const;
 

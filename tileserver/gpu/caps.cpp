@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/gpu/caps.h"
 
+#include <algorithm>
 #include <array>
 
 #include "tileserver/gpu/extensions.h"
@@ -269,6 +270,11 @@ GlCaps query_caps(const Gl& gl) {
         if (gl.GetError() == GL_NO_ERROR) caps.limits.push_back({dimension, values});
     }
     return caps;
+}
+
+bool is_software(const GlCaps& caps) {
+    constexpr std::array kNames = {"llvmpipe", "softpipe", "SWR", "Software Rasterizer", "swrast"};
+    return std::ranges::any_of(kNames, [&](const char* name) { return caps.renderer.find(name) != std::string::npos; });
 }
 
 }  // namespace wall::tileserver

@@ -21,4 +21,7 @@ struct GlCaps {
 
 GlCaps query_caps(const Gl& gl);
 
+/// By the renderer's name: it is a program that draws on the processor, such as Mesa's llvmpipe.
+bool is_software(const GlCaps& caps);
+
 }  // namespace wall::tileserver

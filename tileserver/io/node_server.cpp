@@ -91,6 +91,12 @@ MonitorRequest monitor_request(const config::WallConfig& wall, const config::Nod
     return request;
 }
 
+/// A processor has no cache of vertices that would have to be suited.
+bool orders_triangles(const config::NodeConfig& node, const GlCaps& caps) {
+    return node.triangle_order == config::TriangleOrder::on ||
+           (node.triangle_order == config::TriangleOrder::automatic && !is_software(caps));
+}
+
 /// What is 0 there is as usual.
 SessionQuota quota_of(const proto::Ticket& ticket) {
     SessionQuota out;
@@ -148,6 +154,7 @@ Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor execu
                             ScreenRequest{window_request(wall, node), monitor_request(wall, node)}, compilers);
     if (!render) return tl::unexpected(render.error());
     server->render_ = std::move(*render);
+    server->render_->set_orders_triangles(orders_triangles(node, server->render_->started().caps));
     return server;
 }
 

@@ -3,7 +3,8 @@
 
 namespace wall::tileserver {
 
-Buffer::Buffer(ObjectAccount& account, Driver& driver) : ObjectOf(account), gl_(driver.gl()), driver_(driver) {
+Buffer::Buffer(ObjectAccount& account, Driver& driver)
+    : ObjectOf(account), gl_(driver.gl()), driver_(driver), orders_(driver) {
     gl_.CreateBuffers(1, &name_);
 }
 
@@ -17,6 +18,22 @@ Buffer::~Buffer() {
 void Buffer::release() {
     driver_.release_uniform_buffer(name_);
     if (gives_texels_) gl_.Flush();
+    forget_orders();
+}
+
+void Buffer::forget_orders() {
+    const bool counted = orders_.bytes() != 0;
+    orders_.forget();
+    if (counted) static_cast<void>(has_content(size_));  // less than before
+}
+
+GLuint Buffer::in_order(const IndexRange& range) {
+    if (!stays_) return 0;
+    const std::uint64_t before = orders_.bytes();
+    const GLuint found = orders_.drawn(name_, range);
+    if (orders_.bytes() == before || has_content(size_ + orders_.bytes())) return found;
+    may_be_written();  // the session has no memory for that: it is left alone
+    return 0;
 }
 
 bool Buffer::define(std::uint32_t size, GLenum usage) {

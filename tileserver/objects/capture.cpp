@@ -46,8 +46,9 @@ GLuint Capture::begin(const ObjectTable& objects) {
     gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, name);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const glstate::BufferRange& part = parts_[i];
-        const Buffer* buffer = objects.find<Buffer>(ClientName(part.buffer));
+        Buffer* buffer = objects.find<Buffer>(ClientName(part.buffer));
         if (buffer == nullptr || part.offset >= buffer->size() || part.offset % 4 != 0) continue;
+        buffer->may_be_written();
         const std::uint64_t rest = buffer->size() - part.offset;
         const std::uint64_t bytes = (part.size != 0 ? std::min<std::uint64_t>(part.size, rest) : rest) / 4 * 4;
         if (bytes != 0)

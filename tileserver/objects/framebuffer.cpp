@@ -38,6 +38,10 @@ Result<void> Framebuffer::update(const ObjectTable& objects, SharedContents& sha
     gl_.NamedFramebufferReadBuffer(framebuffer_, definition_.read_buffer);
     set_defaults();
     complete_ = gl_.CheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    GLint depth = GL_NONE;
+    gl_.GetNamedFramebufferAttachmentParameteriv(framebuffer_, GL_DEPTH_ATTACHMENT,
+                                                 GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &depth);
+    has_depth_ = depth != GL_NONE;
     find_size();
     driver_.forget_target();
     defined_ = false;

@@ -27,6 +27,7 @@ public:
 
     void bind(GLenum draw_buffer, GLenum read_buffer) override;
     bool draws_colors() const override;
+    bool has_depth() const override { return has_depth_; }
 
 private:
     void set_defaults();
@@ -38,6 +39,7 @@ private:
     Driver& driver_;
     const Gl& gl_;
     glstate::FramebufferDefinition definition_;
+    bool has_depth_ = false;
     bool defined_ = false;                            // anew, since update()
     std::uint64_t textures_ = 0, renderbuffers_ = 0;  // versions of the table as of update()
 };

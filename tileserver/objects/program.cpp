@@ -70,6 +70,14 @@ void set_vector(const Gl& gl, GLuint program, GLint location, GLsizei count, con
     }
 }
 
+/// Geometry and tessellation shaders may put several triangles at one depth. A word in a comment does no harm.
+bool draws_each_alone(const glapi::ProgramDefinition& definition) {
+    return std::ranges::all_of(definition.shaders, [](const glapi::ShaderSource& shader) {
+        const bool plain = shader.type == GL_VERTEX_SHADER || shader.type == GL_FRAGMENT_SHADER;
+        return plain && shader.source.find("gl_PrimitiveID") == std::string::npos;
+    });
+}
+
 }  // namespace
 
 void Program::release() {
@@ -238,6 +246,7 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     name_ = built.driver;
     computes_ = std::ranges::find(definition->shaders, GLenum{GL_COMPUTE_SHADER}, &glapi::ShaderSource::type) !=
                 definition->shaders.end();
+    in_any_order_ = draws_each_alone(*definition);
     locations_ = map_locations(name_, names);
     find_blocks(blocks);
     find_storage_blocks(storage_blocks);
@@ -327,6 +336,7 @@ std::optional<glstate::Projection> Program::project(const glstate::Projection& f
     if (transform == nullptr) return std::nullopt;
     auto out = glstate::make_projection(fixed_function, *transform, position_.program().depth);
     glstate::set_camera(out, position_.camera(state.matrix.projection));
+    out.unknown_elsewhere = position_.camera_is_named();
     return out;
 }
 
@@ -336,7 +346,6 @@ void Program::look(const std::optional<geom::EyeView>& view) {
     camera_changed_ = false;
     const auto camera = position_.uniform_camera();
     if (!camera || camera->location >= locations_.size()) return;
-    out.unknown_elsewhere = position_.camera_is_named();
     glstate::Mat4 seen;
     std::ranges::copy(camera->matrix, seen.begin());
     if (const auto change = view ? glstate::view_change(*view, seen) : std::nullopt)

@@ -61,6 +61,8 @@ public:
     std::uint32_t attributes() const { return attributes_; }
     /// It reads or writes memory at places that it addresses.
     bool touches_memory() const { return has_images_ || !storage_bindings_.empty() || !counter_bindings_.empty(); }
+    /// What it draws depends on each triangle and its vertices alone, not on how many came before.
+    bool draws_in_any_order() const { return in_any_order_ && !touches_memory(); }
     /// How many run in a group of its compute shader; 0: it has none.
     std::uint64_t group_invocations() const { return group_invocations_; }
 
@@ -84,7 +86,7 @@ private:
     std::vector<std::uint32_t> block_bindings_;                       // by the driver's
     std::vector<GLuint> storage_blocks_;                              // as blocks_
     std::vector<std::uint32_t> storage_bindings_, counter_bindings_;  // by the driver's index
-    bool has_images_ = false, computes_ = false;
+    bool has_images_ = false, computes_ = false, in_any_order_ = false;
     std::uint32_t attributes_ = 0;
     std::uint64_t group_invocations_ = 0;
     /// Functions by the locations of a stage that has such variables.

@@ -151,6 +151,7 @@ public:
     }
     void bind(GLenum, GLenum) override { driver_.gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_); }
     bool draws_colors() const override { return true; }
+    bool has_depth() const override { return false; }
     PictureTexture picture() const {
         return {texture, framebuffer_, width(), height(), std::max(canvas.version, right_version)};
     }

@@ -516,6 +516,9 @@ void RenderThread::set_quota(SessionId session, const SessionQuota& quota) {
 void RenderThread::remove_session(SessionId session) {
     post([=](Loop& loop) { loop.remove_session(session); });
 }
+void RenderThread::set_orders_triangles(bool on) {
+    post([=](Loop& loop) { loop.node_.orders_triangles = on; });
+}
 void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background, std::uint32_t version) {
     post([tiles = std::move(tiles), background, version](Loop& loop) {
         loop.node_.tiles = tiles;

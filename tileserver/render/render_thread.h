@@ -116,6 +116,8 @@ public:
     void set_quota(SessionId session, const SessionQuota& quota);
     /// All streams of the session go at once, whatever is left in them.
     void remove_session(SessionId session);
+    /// Whether triangles of meshes that stay are drawn in an order that suits a GPU, where nobody sees it.
+    void set_orders_triangles(bool on);
     /// `version` is told when it is done (NodeEvents::tiles_taken).
     void set_tiles(std::vector<Tile> tiles, std::uint32_t background, std::uint32_t version = 0);
     /// What drawing takes for each tile is in the stats.

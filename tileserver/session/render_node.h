@@ -32,6 +32,7 @@ struct RenderNode {
     std::set<SessionId> returning;                   ///< whoever coordinates does not know them yet
     const SoftContext* current = nullptr;            ///< whose state the driver holds; only compared, it may be gone
     CompileTrials* trials = nullptr;                 ///< of shaders; null: the driver compiles them at once
+    bool orders_triangles = false;                   ///< of meshes that stay, where nobody sees it (index_orders.h)
     Work ended;                                      ///< of sessions that are gone
 
     explicit RenderNode(Driver& d) : driver(d), tile_times(d.gl()) {}

@@ -34,8 +34,9 @@ glstate::ImageUnit found_image(const SessionReplica& session, const glstate::Ima
 /// it.
 glstate::BufferRange found_part(const SessionReplica& session, const glstate::BufferRange& wanted,
                                 std::uint32_t alignment) {
-    const Buffer* buffer = wanted.buffer != 0 ? session.objects.find<Buffer>(ClientName(wanted.buffer)) : nullptr;
+    Buffer* buffer = wanted.buffer != 0 ? session.objects.find<Buffer>(ClientName(wanted.buffer)) : nullptr;
     if (buffer == nullptr || wanted.offset >= buffer->size() || wanted.offset % alignment != 0) return {};
+    buffer->may_be_written();
     const auto rest = static_cast<std::uint32_t>(buffer->size() - wanted.offset);
     return {buffer->name(), wanted.offset, wanted.size != 0 ? std::min(wanted.size, rest) : rest};
 }

@@ -112,6 +112,22 @@ TEST(WallConfig, NodesAreEnough) {
     EXPECT_EQ(config->swap_timeout.count(), 250);
 }
 
+TEST(WallConfig, ANodeSaysWhetherItOrdersTriangles) {
+    const auto node = [](const std::string& line) {
+        return parse_config("[[node]]\nname='n'\n" + line + "\n[[node.tile]]\nname='t'\nrect=[0,0,1,1]\n", "wall.toml");
+    };
+    const auto usual = node(""), on = node("triangle_order = \"on\""), off = node("triangle_order = \"off\"");
+    ASSERT_TRUE(usual && on && off);
+    EXPECT_EQ(usual->nodes[0].triangle_order, TriangleOrder::automatic);
+    EXPECT_EQ(node("triangle_order = \"auto\"")->nodes[0], usual->nodes[0]);
+    EXPECT_EQ(on->nodes[0].triangle_order, TriangleOrder::on);
+    EXPECT_EQ(off->nodes[0].triangle_order, TriangleOrder::off);
+    EXPECT_FALSE(draws_as(on->nodes[0], off->nodes[0])) << "the node begins anew";
+    EXPECT_EQ(node("triangle_order = true").error().message, "wall.toml:3: 'triangle_order': expected a string");
+    EXPECT_EQ(node("triangle_order = \"yes\"").error().message,
+              "wall.toml:3: 'triangle_order' is 'yes': expected \"auto\", \"on\" or \"off\"");
+}
+
 TEST(WallConfig, ATileIsHeadlessOrAWindow) {
     const auto config = parse_config(R"(
 [[node]]
