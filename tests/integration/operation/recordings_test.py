@@ -222,6 +222,25 @@ class Recordings(unittest.TestCase):
             time.sleep(1)
             self.assertGreater(again.finish()["frames"], 5)
 
+    def test_nodes_that_are_held_are_not_late_beside_a_recorder(self) -> None:
+        with Wall(**SAME_TILES, environment=DRIVER) as wall:
+            session = self.clock(wall, "--fps", 30)
+            recorder = Recorder(wall, session, wall.folder / "clock.wgl", "--snapshot", 0.5)
+            time.sleep(0.5)
+            wall.hold(session)
+            time.sleep(1)
+            for _ in range(3):
+                frame = wall.wait(session, 1)
+                wall.step(session)
+                wall.wait(session, frame + 1)
+                colours = numpy.unique(picture(wall).reshape(-1, 3), axis=0)
+                self.assertEqual(len(colours), 1, "all tiles show the same frame")
+            wall.hold(session, False)
+            wall.wait(session, wall.wait(session, 1) + 30)
+            timeouts = [surface["swap_timeouts"] for s in wall.sessions() for surface in s["surfaces"]]
+            self.assertEqual(timeouts, [0])
+            self.assertGreater(recorder.finish()["frames"], 10)
+
     def test_a_program_that_ends_ends_its_recording(self) -> None:
         with Wall(**SAME_TILES, environment=DRIVER) as wall:
             session = self.clock(wall, "--fps", 30)
