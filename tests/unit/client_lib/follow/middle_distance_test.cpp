@@ -57,7 +57,7 @@ TEST(ViewUse, IsMeasuredAnewOnlyWhereSomebodyWantsIt) {
     glstate::Projection projection;
     projection.clip_from_object = projection.camera = kCamera;
     const auto frame = [&](ViewUse& use) {
-        use.note(&projection, &box);
+        use.note(projection, &box);
         return use.finish_frame();
     };
     ViewUse use;
