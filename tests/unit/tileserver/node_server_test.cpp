@@ -24,6 +24,7 @@
 #include "common/base/descriptor_message.h"
 #include "common/net/sockets.h"
 #include "common/wire/batch.h"
+#include "common/wire/frame_reader.h"
 #include "common/wire/limits.h"
 #include "common/wire/ring.h"
 #include "gen/glapi/wire.gen.h"
@@ -130,7 +131,7 @@ public:
         write_all(fd_.get(), std::span(&one, 1));
     }
     /// The next frame; nothing at the connection's end.
-    std::optional<Frame> next() {
+    std::optional<wire::Frame> next() {
         for (;;) {
             auto frame = reader_.next();
             if (!frame) return std::nullopt;
@@ -157,7 +158,7 @@ public:
 
 private:
     UniqueFd fd_;
-    FrameReader reader_{wire::kMaxFramePayload};
+    wire::FrameReader reader_{wire::kMaxFramePayload};
 };
 
 class NodeServerTest : public ::testing::Test {
