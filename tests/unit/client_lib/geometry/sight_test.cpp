@@ -30,7 +30,7 @@ SurfaceLayout all_around() {
     layout.width = layout.height = kSide;
     layout.rect = {0, 0, 500, 100};
     for (std::uint32_t i = 0; i < 4; ++i) {
-        layout.views.push_back({geom::view_of_angles(90.0 * i, 0, 0, 90, 90)});
+        layout.views.push_back({.view = {.elsewhere = geom::view_of_angles(90.0 * i, 0, 0, 90, 90)}});
         layout.layers.push_back(view_layer(layout, NodeIndex(i), 0, i + 1));
     }
     layout.layers.push_back(whole_window(kSide, kSide, NodeIndex(4)));
