@@ -210,7 +210,7 @@ NodeInfo read_node(pbf_reader in, bool up) {
             case 2: node.address = read_string(in); break;
             case 3: node.ticket = read_string(in); break;
             case 4: node.incarnation = read_u32(in); break;
-            case 6: node.records = in.get_bool(); break;
+            case 6: node.records = read_u32(in) != 0; break;
             default: in.skip();
         }
     }

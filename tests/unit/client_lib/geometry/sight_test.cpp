@@ -124,7 +124,8 @@ TEST_F(SightTest, TrianglesAreSeenOneByOne) {
 }
 
 TEST_F(SightTest, WhatIsNotKnownMayBeInAllViews) {
-    sight_.aim(glstate::unknown_projection(own_.camera), layout_.views);
+    const glstate::Projection unknown = glstate::unknown_projection(own_.camera);
+    sight_.aim(unknown, layout_.views);
     EXPECT_EQ(seen_by(box_at(0, 0, -5)), (Nodes{0, 1, 2, 3, 4}));
     glstate::Projection named = own_;
     named.unknown_elsewhere = true;
