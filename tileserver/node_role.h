@@ -32,9 +32,10 @@ public:
     const config::NodeConfig* node() const { return wall_.find_node(source_.gpu.empty() ? name_ : source_.gpu); }
     const NodeKeys& keys() const { return keys_; }
 
-    /// walld goes by this wall.toml now, which a machine that has joined keeps. True: the node is another one by it,
-    /// and find() would say so. Where walld's machine has a file that says something else, walld has not read it yet,
-    /// or reads another one: then this node stays what it is.
+    /// walld goes by this wall.toml now, which a machine that has joined keeps. True: by it the node is one that this
+    /// process cannot go on as, and find() would say so. Other headless tiles walld tells with its welcome. Where
+    /// walld's machine has a file that says something else, walld has not read it yet, or reads another one: then this
+    /// node stays what it is.
     bool described(const std::string& wall_toml) const;
 
 private:

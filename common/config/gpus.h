@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A [[node]] whose tiles several GPUs draw is a node of the wall for each of them: programs send each what lies on its
 // tiles, hold objects only where they draw with them, and walld presents a frame when all have it (docs/gpus.md,
-// OCTAVIS 3). Pure; any thread.
+// O3.1, O3.2). Pure; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A wall to test with: two nodes side by side, and an outbox for tests that do not look at what is told to nodes and
-// programs.
+// A wall to test with: two nodes side by side, and outboxes for tests that look at what is told to nodes and programs,
+// or do not.
 #pragma once
+
+#include <map>
+#include <vector>
 
 #include "walld/wall/wall.h"
 
@@ -27,6 +30,15 @@ public:
     void to_client(SessionId, const proto::Envelope&) override {}
     void to_member(SessionId, Rank, const proto::Envelope&) override {}
     void end_session(SessionId, const std::string&) override {}
+};
+
+/// One that keeps what each node and the one program are told.
+class HearingOutbox : public NoOutbox {
+public:
+    void to_node(NodeIndex node, const proto::Envelope& message) override { nodes[node].push_back(message); }
+    void to_client(SessionId, const proto::Envelope& message) override { client.push_back(message); }
+    std::map<NodeIndex, std::vector<proto::Envelope>> nodes;
+    std::vector<proto::Envelope> client;
 };
 
 }  // namespace wall::walld

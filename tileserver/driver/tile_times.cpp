@@ -12,7 +12,7 @@ TileTimes::~TileTimes() {
 }
 
 void TileTimes::tick(Clock::time_point now) {
-    if (looking_ && (now - begun_ >= kLook || marks_.size() >= kMostMarks)) end_look(now);
+    if (looking_ && now - begun_ >= kLook) end_look(now);
     if (!looking_ && !marks_.empty()) take_marks();
     if (on_ && !looking_ && marks_.empty() && now >= next_) begin_look(now);
 }
@@ -27,15 +27,20 @@ void TileTimes::begin_look(Clock::time_point now) {
 
 /// It may have ended early, or late where the driver held the thread up.
 void TileTimes::end_look(Clock::time_point now) {
-    put(std::nullopt);
+    add_mark(std::nullopt);
     looking_ = false;
     next_ = std::max(next_, now);
     const auto taken = std::max<Clock::duration>(now - begun_, std::chrono::microseconds(1));
     scale_ = std::chrono::duration<double>(next_ - begun_) / std::chrono::duration<double>(taken);
 }
 
+/// The look ends where it is full, since what comes later would count as part of its time.
 void TileTimes::put(std::optional<std::uint32_t> slot) {
-    if (marks_.size() > kMostMarks) return;
+    if (marks_.size() + 1 < kMostMarks) add_mark(slot);
+    else end_look(Clock::now());
+}
+
+void TileTimes::add_mark(std::optional<std::uint32_t> slot) {
     GLuint query = 0;
     if (free_.empty()) {
         gl_.GenQueries(1, &query);

@@ -43,6 +43,7 @@ private:
         std::optional<std::uint32_t> slot;  ///< of what is behind it
     };
     void put(std::optional<std::uint32_t> slot);
+    void add_mark(std::optional<std::uint32_t> slot);
     void begin_look(Clock::time_point now);
     void end_look(Clock::time_point now);
     void take_marks();

@@ -320,8 +320,6 @@ private:
     bool take_rest(NodeIndex node, const config::NodeConfig& config);
     void tell_tiles();
     // of several GPUs (wall_balance.cpp)
-    /// The nodes that a tileserver is.
-    std::vector<NodeIndex> gpus_of(const std::string& process) const;
     bool may_be_balanced(NodeIndex node) const;
     void take_tile_times(NodeIndex node);
     void balance(NodeIndex reporting, Clock::time_point now);

@@ -23,16 +23,9 @@ constexpr std::chrono::seconds kRest{60};        // until a tile that was moved,
 
 }  // namespace
 
-std::vector<NodeIndex> Wall::gpus_of(const std::string& process) const {
-    std::vector<NodeIndex> out;
-    for (const NodeIndex i : nodes_.ids())
-        if (nodes_[i].duty != Duty::gone && nodes_[i].config->process == process) out.push_back(i);
-    return out;
-}
-
 bool Wall::may_be_balanced(NodeIndex node) const {
     const auto& config = *nodes_[node].config;
-    return gpus_of(config.process).size() > 1 && std::ranges::any_of(config.tiles, &config::TileConfig::dealt);
+    return nodes_called(config.process).size() > 1 && std::ranges::any_of(config.tiles, &config::TileConfig::dealt);
 }
 
 /// Of one node, once there are reports of kWindow.
@@ -62,7 +55,7 @@ void Wall::balance(NodeIndex reporting, Clock::time_point now) {
     if (!may_be_balanced(reporting)) return;
     take_tile_times(reporting);
     if (moving_) return;
-    const auto gpus = gpus_of(nodes_[reporting].config->process);
+    const auto gpus = nodes_called(nodes_[reporting].config->process);
     if (!std::ranges::all_of(gpus, [&](NodeIndex i) { return nodes_[i].up && nodes_[i].times.known; })) return;
     std::vector<TileLoad> loads;
     for (const NodeIndex gpu : gpus) {
@@ -133,7 +126,7 @@ void Wall::end_move(bool there, Clock::time_point now) {
     }
     describe_node(move.to, std::move(to));
     resting_[move.tile] = now + kRest;
-    for (const NodeIndex gpu : gpus_of(nodes_[move.to].config->process)) nodes_[gpu].times = {};
+    for (const NodeIndex gpu : nodes_called(nodes_[move.to].config->process)) nodes_[gpu].times = {};
     if (there) ++tiles_moved_;
     log::info("tile_moved tile={} there={}", log::quoted(move.tile), there);
     tell_tiles();

@@ -39,14 +39,6 @@ name = "d"
 rect = [100, 100, 100, 100]
 )";
 
-class Heard : public NoOutbox {
-public:
-    void to_node(NodeIndex node, const proto::Envelope& message) override { nodes[node].push_back(message); }
-    void to_client(SessionId, const proto::Envelope& message) override { client.push_back(message); }
-    std::map<NodeIndex, std::vector<proto::Envelope>> nodes;
-    std::vector<proto::Envelope> client;
-};
-
 class AWallOfTwoGpus : public ::testing::Test {
 protected:
     AWallOfTwoGpus() {
@@ -129,7 +121,7 @@ protected:
     Clock::time_point now_{std::chrono::hours(1)};
     std::uint64_t time_us_ = 0;
     std::map<std::pair<NodeIndex, std::uint32_t>, std::uint64_t> ns_;
-    Heard out_;
+    HearingOutbox out_;
     char secret_ = 'a';
     Wall wall_{*config::parse_config(kTwoGpus, "test"), out_,
                [this](std::size_t bytes) { return std::string(bytes, secret_++); }};
@@ -179,7 +171,7 @@ TEST_F(AWallOfTwoGpus, LeavesAMovedTileForAWhile) {
 TEST_F(AWallOfTwoGpus, AsksItsNodesToMeasureAndNoOthers) {
     drawing_takes({{"a", 0.4}, {"d", 0.4}});
     EXPECT_TRUE(out_.nodes[kSecond].front().node_welcome().measure_tiles());
-    Heard out;
+    HearingOutbox out;
     Wall two(*config::parse_config(kTwoNodes, "test"), out, [](std::size_t bytes) { return std::string(bytes, 'a'); });
     proto::NodeHello hello;
     hello.set_version(wire::kProtocolVersion);

@@ -16,14 +16,6 @@ using ::testing::IsEmpty;
 
 constexpr NodeIndex kNext(2);  // of a node that is added to kTwoNodes
 
-class Heard : public NoOutbox {
-public:
-    void to_node(NodeIndex node, const proto::Envelope& message) override { nodes[node].push_back(message); }
-    void to_client(SessionId, const proto::Envelope& message) override { client.push_back(message); }
-    std::map<NodeIndex, std::vector<proto::Envelope>> nodes;
-    std::vector<proto::Envelope> client;
-};
-
 std::string node_text(const std::string& name, const std::string& rect) {
     return "[[node]]\nname = \"" + name + "\"\n[[node.tile]]\nname = \"tile of " + name + "\"\nrect = [" + rect + "]\n";
 }
@@ -73,7 +65,7 @@ protected:
     std::string ticket_of(NodeIndex node) const { return wall_.sessions().at(session_).tickets.at(node); }
 
     Clock::time_point now_{std::chrono::hours(1)};
-    Heard out_;
+    HearingOutbox out_;
     char secret_ = 'a';
     Wall wall_{*config::parse_config(kTwoNodes, "test"), out_,
                [this](std::size_t bytes) { return std::string(bytes, secret_++); }};
