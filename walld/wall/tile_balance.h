@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which tile another GPU of the same tileserver had better draw, by what drawing each takes now (OCTAVIS 5.3, which
+// Which tile another GPU of the same tileserver had better draw, by what drawing each takes now (O5.3, which
 // shares screens out by measured cost). Pure.
 #pragma once
 
