@@ -195,7 +195,7 @@ asio::awaitable<void> ControlServer::serve(Connection connection) {
 /// Somebody who may use the wall, and what they have begun with.
 asio::awaitable<void> ControlServer::serve_first(Connection connection, proto::Envelope first, Person who,
                                                  Quota::Place place) {
-    if (first.has_node_hello()) co_await serve_node(connection, first.node_hello(), who);
+    if (first.has_node_hello()) co_await serve_node(connection, first.node_hello(), who, std::move(place));
     else if (first.has_client_hello())
         co_await serve_client(connection, first.client_hello(), std::move(who), std::move(place));
     else if (first.has_operator_request()) co_await serve_operator(connection, std::move(first), std::move(who));
@@ -219,7 +219,7 @@ asio::awaitable<void> ControlServer::serve_machine(Connection connection, Quota:
     } else if (first->has_node_hello()) {
         const auto who = machines_.node(first->node_hello(), key);
         if (!who) co_return no(who.error());
-        co_await serve_node(connection, first->node_hello(), *who);
+        co_await serve_node(connection, first->node_hello(), *who, std::move(place));
     } else if (first->has_host_hello()) {
         auto who = machines_.user(first->host_hello(), key);
         if (!who) co_return no(who.error());
@@ -271,7 +271,9 @@ asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection
 
 // ---- nodes ----
 
-asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::NodeHello hello, const Person& who) {
+/// There are as many nodes as wall.toml describes, so `place` is given back when this is one.
+asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::NodeHello hello, const Person& who,
+                                                Quota::Place place) {
     hello.set_address(net::reachable_at(hello.address(), connection->ends()));
     // Nodes get every session's tickets and pixels.
     if (const auto permitted = may(who, Need::operate, "run a node", nullptr); !permitted) {
@@ -279,6 +281,7 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
     }
     const auto joined = admit_node(connection, hello, who);
     if (!joined) co_return turn_away(connection, who, joined.error().message);
+    place.leave();
     log::info("node_up node={} incarnation={} address={} backend={} renderer={}", log::quoted(hello.name()),
               wall_.nodes()[*joined].incarnation, log::quoted(hello.address()), log::quoted(hello.backend()),
               log::quoted(hello.caps().renderer()));

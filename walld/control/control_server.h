@@ -78,7 +78,8 @@ private:
     void turn_away(const Connection& connection, const Person& who, const std::string& reason);
     asio::awaitable<void> serve_first(Connection connection, proto::Envelope first, Person who, Quota::Place place);
     asio::awaitable<void> serve_machine(Connection connection, Quota::Place place);
-    asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who);
+    asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who,
+                                     Quota::Place place);
     Result<NodeIndex> admit_node(const Connection& connection, const proto::NodeHello& hello, const Person& who);
     void drop_node(NodeIndex node, const std::string& reason, bool link_lost = false);
     bool serves(NodeIndex node, const Connection& connection) const;

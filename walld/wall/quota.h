@@ -21,7 +21,8 @@ struct QuotaLimits {
 };
 
 // What walld allows. LimitNOFILE of walld.service is above the sum of all connections.
-inline constexpr QuotaLimits kPeerConnections{"connections to this wall that are not a program's", 512, 2048};
+inline constexpr QuotaLimits kPeerConnections{"connections to this wall that are no program's and no node's", 512,
+                                              2048};
 inline constexpr QuotaLimits kHandshakes{"TLS handshakes with this wall", 64, 512};
 inline constexpr QuotaLimits kHttpConnections{"HTTP connections to this wall", 512, 1024};
 inline constexpr QuotaLimits kForeignHttp{"HTTPS connections to this wall", 64,
