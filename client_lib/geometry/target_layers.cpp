@@ -2,7 +2,6 @@
 #include "client_lib/geometry/target_layers.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "common/wire/limits.h"
@@ -40,20 +39,31 @@ TargetLayer whole_window(std::uint32_t width, std::uint32_t height, NodeIndex no
     return whole_window({.width = width, .height = height, .rect = all}, node, all);
 }
 
+/// Layers mostly come in the order of their nodes, and then one look at the last node is enough; a search for each
+/// would take a thousand nodes a million looks.
 void nodes_touched(std::span<const TargetLayer> layers, const Reach& reach, NodeMasks& out) {
     out.clear();
+    bool in_order = true;  // so far
     for (const TargetLayer& layer : layers) {
         if (!reach.touches(layer)) continue;
-        auto mask = std::find_if(out.rbegin(), out.rend(), [&](const NodeMask& m) { return m.node == layer.node; });
-        NodeMask& of_node = mask != out.rend() ? *mask : out.emplace_back(NodeMask{layer.node, 0});
-        of_node.slots |= layer.bit();
+        if (out.empty() || (in_order && out.back().node < layer.node)) {
+            out.push_back({layer.node, layer.bit()});
+        } else if (out.back().node == layer.node) {
+            out.back().slots |= layer.bit();
+        } else if (const auto known = std::ranges::find(out, layer.node, &NodeMask::node); known != out.end()) {
+            known->slots |= layer.bit();
+        } else {
+            in_order = false;
+            out.push_back({layer.node, layer.bit()});
+        }
     }
 }
 
 std::size_t count_nodes(std::span<const TargetLayer> layers) {
-    std::uint64_t seen = 0;
-    for (const TargetLayer& layer : layers) seen |= std::uint64_t{1} << (layer.node.value & 63);
-    return static_cast<std::size_t>(std::popcount(seen));
+    if (!std::ranges::is_sorted(layers, {}, &TargetLayer::node)) return nodes_touched(layers, std::nullopt).size();
+    std::size_t nodes = 0;
+    for (std::size_t i = 0; i < layers.size(); ++i) nodes += i == 0 || layers[i].node != layers[i - 1].node ? 1 : 0;
+    return nodes;
 }
 
 NodeMasks nodes_touched(std::span<const TargetLayer> layers, const Reach& reach) {

@@ -87,7 +87,7 @@ using NodeMasks = std::vector<NodeMask>;
 NodeMasks nodes_touched(std::span<const TargetLayer> layers, const Reach& reach);
 /// The same into a vector that is used again and again, so that no memory is asked for.
 void nodes_touched(std::span<const TargetLayer> layers, const Reach& reach, NodeMasks& out);
-/// On how many nodes the layers lie; where these are more than 64, perhaps fewer.
+/// On how many nodes the layers lie.
 std::size_t count_nodes(std::span<const TargetLayer> layers);
 
 }  // namespace wall::client

@@ -52,6 +52,24 @@ TEST(Layers, ATargetMayHaveAnyNumberOfThem) {
     const NodeMasks last = nodes_touched(layers, PixelRect{88.5f, 28.5f, 90, 30});
     ASSERT_EQ(last.size(), 2u);
     for (const auto& [node, slots] : last) EXPECT_EQ(slots, std::uint64_t{3} << 28);
+    EXPECT_EQ(count_nodes(layers), kNodes);
+}
+
+TEST(Layers, TheirNodesComeInAnyOrder) {
+    std::vector<TargetLayer> layers;
+    for (const std::uint32_t node : {5u, 3u, 5u, 7u, 3u, 200u, 7u})
+        layers.push_back({NodeIndex(node), static_cast<std::uint32_t>(layers.size()), {0, 0, 1, 1}, {}});
+    const NodeMasks masks = nodes_touched(layers, std::nullopt);
+    ASSERT_EQ(masks.size(), 4u);
+    std::uint64_t all = 0;
+    for (const auto& [node, slots] : masks) {
+        EXPECT_EQ(all & slots, 0u);
+        all |= slots;
+        for (const TargetLayer& layer : layers) EXPECT_EQ((slots & layer.bit()) != 0, layer.node == node);
+    }
+    EXPECT_EQ(all, 0x7fu);
+    EXPECT_EQ(count_nodes(layers), 4u);
+    EXPECT_EQ(count_nodes({}), 0u);
 }
 
 }  // namespace
