@@ -126,6 +126,7 @@ bool parse(int argc, char** argv, Options& o) {
         else if (is("--rewrite")) o.rewrite = true;
         else if (number("--frames", o.frames) || number("--draws", o.draws)) continue;
         else if (is("--size") && i + 1 < argc && std::sscanf(argv[++i], "%dx%d", &o.width, &o.height) == 2) continue;
+        else if (is("--mesh") && i + 1 < argc && std::sscanf(argv[++i], "%dx%d", &o.columns, &o.rows) == 2) continue;
         else return false;
     }
     return o.frames > 0 && o.width > 0 && o.height > 0 && o.draws >= 0;
@@ -140,6 +141,7 @@ int main(int argc, char** argv) {
             "usage: buffers [--glsl] [--rewrite] [--draws N] [--frames N] [--size WxH]\n"
             "Draws N frames of a lit mesh of 1,001,000 triangles in buffer objects and prints frames/s.\n"
             "--glsl: by a shader. --rewrite: its vertices are written anew for every frame.\n"
+            "--mesh COLUMNSxROWS: of twice as many triangles; 1001x500 if it is not given.\n"
             "--draws: instead, so many draws a frame of 1000 meshes of 24 triangles, each at a place of its own.\n",
             stderr);
         return 2;

@@ -18,6 +18,7 @@
 #include "common/log/refusals.h"
 #include "common/wire/limits.h"
 #include "common/wire/weights.h"
+#include "tileserver/io/caps_message.h"
 #include "tileserver/io/node_stats.h"
 #include "tileserver/io/output_message.h"
 
@@ -29,19 +30,6 @@ using namespace std::chrono_literals;
 constexpr auto kRetryInterval = 250ms;
 constexpr auto kRefusedInterval = 2s;
 constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
-
-void fill_caps(const GlCaps& caps, proto::GlCaps& out) {
-    out.set_vendor(caps.vendor);
-    out.set_renderer(caps.renderer);
-    out.set_version(caps.version);
-    out.set_shading_language_version(caps.shading_language_version);
-    out.set_extensions(caps.extensions);
-    for (const auto& limit : caps.limits) {
-        auto& row = *out.add_limits();
-        row.set_name(limit.name);
-        for (const double value : limit.values) row.add_values(value);
-    }
-}
 
 /// One that is not known is for both.
 geom::Eye eye_of(std::uint32_t word) {

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+#include "bench/simulate/counting_wall.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+#include "common/daemon/keep_running.h"
+#include "common/wire/limits.h"
+#include "gen/glapi/wire.gen.h"
+#include "tileserver/io/frame_source.h"
+
+namespace wall::simulate {
+namespace {
+
+constexpr std::uint32_t kMostHello = 4 << 10;  // bytes
+constexpr std::chrono::seconds kPingInterval{1};
+
+/// Frames that are said to the program, put together so that one write takes them.
+class Answers {
+public:
+    void add(wire::FrameKind kind, std::span<const std::byte> payload) {
+        const auto frame = wire::whole_frame(kind, payload);
+        bytes_.insert(bytes_.end(), frame.begin(), frame.end());
+    }
+    asio::awaitable<bool> send(net::Stream& stream) {
+        if (bytes_.empty()) co_return true;
+        const auto [error, sent] = co_await stream.write(asio::buffer(bytes_));
+        bytes_.clear();
+        co_return !error;
+    }
+
+private:
+    std::vector<std::byte> bytes_;
+};
+
+}  // namespace
+
+CountingWall::CountingWall(asio::any_io_executor executor, net::Address walld, net::Listener listener,
+                           std::vector<std::string> names, proto::GlCaps caps, Events events)
+    : executor_(std::move(executor)),
+      walld_(std::move(walld)),
+      listener_(std::move(listener)),
+      caps_(std::move(caps)),
+      events_(std::move(events)) {
+    for (auto& name : names) nodes_.push_back({std::move(name), nullptr});
+}
+
+Result<std::unique_ptr<CountingWall>> CountingWall::open(asio::any_io_executor executor, const net::Address& walld,
+                                                         const net::Address& listen, std::vector<std::string> names,
+                                                         proto::GlCaps caps, Events events) {
+    auto listener = net::Listener::open(executor, listen);
+    if (!listener) return tl::unexpected(listener.error());
+    return std::unique_ptr<CountingWall>(
+        new CountingWall(executor, walld, std::move(*listener), std::move(names), std::move(caps), std::move(events)));
+}
+
+void CountingWall::start() {
+    const auto take = [this](net::StreamSocket socket) {
+        net::spawn(executor_, "stream", serve(std::make_shared<net::Stream>(std::move(socket))));
+    };
+    net::keep_accepting(executor_, listener_, take, [this] { return stopping_; });
+    net::spawn(executor_, "connect", connect());
+    net::spawn(executor_, "ping", ping());
+}
+
+void CountingWall::stop() {
+    stopping_ = true;
+    listener_.close();
+    for (const Node& node : nodes_)
+        if (node.link) node.link->close();
+    for (const auto& stream : streams_) stream->close();
+}
+
+// ---- walld ----
+
+proto::Envelope CountingWall::hello(const std::string& name) const {
+    proto::Envelope envelope;
+    auto& hello = *envelope.mutable_node_hello();
+    hello.set_version(wire::kProtocolVersion);
+    hello.set_name(name);
+    hello.set_address(listener_.address().text());
+    hello.set_backend("counting");
+    hello.set_pid(static_cast<std::uint32_t>(::getpid()));
+    hello.set_started_us(1);
+    *hello.mutable_caps() = caps_;
+    return envelope;
+}
+
+/// One after the other, as quickly as walld takes them: who waits long to be heard there makes room for others.
+asio::awaitable<void> CountingWall::connect() {
+    for (std::uint32_t node = 0; node < nodes_.size() && !stopping_; ++node) {
+        auto link = co_await net::ControlConnection::connect(walld_, "*");
+        if (!link) co_return events_.failed("no walld: " + link.error().message);
+        (*link)->send(hello(nodes_[node].name));
+        const auto welcome = co_await (*link)->receive();
+        if (!welcome) co_return events_.failed(nodes_[node].name + " has lost walld: " + welcome.error().message);
+        nodes_[node].link = *link;
+        take(node, *welcome);
+        net::spawn(executor_, "link", hear(node));
+    }
+}
+
+asio::awaitable<void> CountingWall::hear(std::uint32_t node) {
+    const auto link = nodes_[node].link;
+    while (!stopping_) {
+        const auto envelope = co_await link->receive();
+        if (envelope) take(node, *envelope);
+        else if (!stopping_)
+            co_return events_.failed(nodes_[node].name + " has lost walld: " + envelope.error().message);
+    }
+}
+
+void CountingWall::take(std::uint32_t node, const proto::Envelope& envelope) {
+    switch (envelope.message_case()) {
+        case proto::Envelope::kNodeWelcome: {
+            proto::Envelope taken;
+            taken.mutable_tiles_taken()->set_tiles_version(envelope.node_welcome().tiles_version());
+            return nodes_[node].link->send(taken);
+        }
+        case proto::Envelope::kTicket:
+            tickets_[envelope.ticket().ticket()] = {node, SessionId(envelope.ticket().session())};
+            return;
+        case proto::Envelope::kSessionEnd:
+            std::erase_if(tickets_, [&](const auto& known) {
+                return known.second.node == node && known.second.session.value == envelope.session_end().session();
+            });
+            return;
+        case proto::Envelope::kRefused:
+            return events_.failed(nodes_[node].name + " is refused: " + envelope.refused().reason());
+        default: return;  // what to show does not matter
+    }
+}
+
+/// walld takes a node that says nothing for one that hangs.
+asio::awaitable<void> CountingWall::ping() {
+    proto::Envelope envelope;
+    envelope.mutable_ping();
+    asio::steady_timer timer(executor_);
+    while (!stopping_) {
+        for (const Node& node : nodes_)
+            if (node.link && node.link->is_open()) node.link->send(envelope);
+        timer.expires_after(kPingInterval);
+        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    }
+}
+
+// ---- programs ----
+
+asio::awaitable<void> CountingWall::serve(std::shared_ptr<net::Stream> stream) {
+    std::uint64_t bytes = 0;
+    tileserver::FrameSource source(*stream, kMostHello, [&](std::size_t came) { bytes += came; });
+    auto frame = co_await source.next();
+    proto::DataHello hello;
+    if (!frame || frame->kind != wire::FrameKind::hello ||
+        !hello.ParseFromArray(frame->payload.data(), static_cast<int>(frame->payload.size())) ||
+        hello.version() != glapi::kStreamVersion)
+        co_return events_.failed("a stream without a hello of this version");
+    const auto ticket = tickets_.find(hello.ticket());
+    if (ticket == tickets_.end()) co_return events_.failed("a stream without a ticket");
+    const Admitted admitted = ticket->second;
+    streams_.insert(stream);
+    Answers answers;
+    const std::uint32_t ends_with_connection = 0;  // and no ring: all comes over the socket
+    answers.add(wire::FrameKind::welcome, std::as_bytes(std::span(&ends_with_connection, 1)));
+    source.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
+
+    TrafficCount count;
+    FrameTraffic now{.session = admitted.session, .rank = hello.rank(), .node = admitted.node};
+    bytes = 0;
+    while (co_await answers.send(*stream)) {
+        frame = co_await source.next();
+        if (!frame) break;
+        if (frame->kind != wire::FrameKind::batch) continue;
+        const auto seen = count.look(frame->payload);
+        if (!seen) {
+            events_.failed(nodes_[admitted.node].name + ": " + seen.error().message);
+            break;
+        }
+        now.traffic += seen->traffic;
+        for (const auto& question : seen->questions) {
+            events_.question(question.name);
+            answers.add(wire::FrameKind::reply, std::as_bytes(std::span(&question.request, 1)));
+        }
+        for (const auto& swap : seen->swaps) {
+            now.surface = swap.surface.value;
+            now.frame = swap.frame;
+            now.link_bytes = std::exchange(bytes, 0);
+            events_.frame(now);
+            now.traffic = {};
+            const std::uint32_t words[] = {swap.surface.value, swap.frame};
+            answers.add(wire::FrameKind::swap_done, std::as_bytes(std::span(words)));
+            proto::Envelope envelope;
+            auto& rendered = *envelope.mutable_rendered();
+            rendered.set_session(admitted.session.value);
+            rendered.set_surface(swap.surface.value);
+            rendered.set_frame(swap.frame);
+            if (const auto& link = nodes_[admitted.node].link) link->send(envelope);
+        }
+    }
+    streams_.erase(stream);
+}
+
+}  // namespace wall::simulate

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Any number of a wall's nodes in one process, which draw nothing: they take programs' streams as nodes do, count what
+// comes, and say at once that each frame is drawn. walld, the client library and the program see a wall of that many
+// nodes, so what is counted is what the real router sends. One executor, one thread.
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bench/simulate/traffic_count.h"
+#include "common/net/control_connection.h"
+#include "proto/control.pb.h"
+
+namespace wall::simulate {
+
+namespace asio = boost::asio;
+
+/// What one process of a program has sent one node for one frame.
+struct FrameTraffic {
+    SessionId session;
+    std::uint32_t rank = 0, node = 0, surface = 0, frame = 0;
+    std::uint64_t link_bytes = 0;  ///< all that came over the stream, coded or not
+    Traffic traffic;
+};
+
+class CountingWall {
+public:
+    struct Events {
+        std::function<void(const FrameTraffic&)> frame;
+        /// Somebody waits for an answer, which is an empty one: for a program that needs it the count is of no use.
+        std::function<void(const std::string& command)> question;
+        std::function<void(const std::string& why)> failed;  ///< what is counted from here on is of no use
+    };
+
+    /// Nodes of these names. All have one socket for streams, `listen`; tickets tell whose a stream is.
+    static Result<std::unique_ptr<CountingWall>> open(asio::any_io_executor executor, const net::Address& walld,
+                                                      const net::Address& listen, std::vector<std::string> names,
+                                                      proto::GlCaps caps, Events events);
+    void start();
+    void stop();
+
+private:
+    struct Node {
+        std::string name;
+        std::shared_ptr<net::ControlConnection> link;
+    };
+    struct Admitted {
+        std::uint32_t node = 0;
+        SessionId session;
+    };
+    CountingWall(asio::any_io_executor executor, net::Address walld, net::Listener listener,
+                 std::vector<std::string> names, proto::GlCaps caps, Events events);
+    asio::awaitable<void> connect();
+    asio::awaitable<void> hear(std::uint32_t node);
+    asio::awaitable<void> ping();
+    asio::awaitable<void> serve(std::shared_ptr<net::Stream> stream);
+    proto::Envelope hello(const std::string& name) const;
+    void take(std::uint32_t node, const proto::Envelope& envelope);
+
+    asio::any_io_executor executor_;
+    const net::Address walld_;
+    net::Listener listener_;
+    std::vector<Node> nodes_;
+    const proto::GlCaps caps_;
+    const Events events_;
+    std::map<std::string, Admitted> tickets_;
+    std::set<std::shared_ptr<net::Stream>> streams_;
+    bool stopping_ = false;
+};
+
+}  // namespace wall::simulate
