@@ -12,10 +12,13 @@ constexpr double kMeanFrames = 16;
 }  // namespace
 
 void Spread::note(std::uint32_t frame, std::size_t group, Clock::time_point now) {
+    if (frame <= given_up_ && !open_.contains(frame)) return;
     const auto at = open_.try_emplace(frame, Open{.first = now, .last = now}).first;
     at->second.last = now;
-    if (++at->second.nodes >= group) finish(at);
-    else if (open_.size() > kMaxOpen) finish(open_.begin());
+    if (++at->second.nodes >= group) return finish(at);
+    if (open_.size() <= kMaxOpen) return;
+    given_up_ = std::max(given_up_, open_.begin()->first);
+    finish(open_.begin());
 }
 
 void Spread::finish(std::map<std::uint32_t, Open>::iterator frame) {

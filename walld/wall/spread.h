@@ -36,6 +36,7 @@ private:
     void finish(std::map<std::uint32_t, Open>::iterator frame);
 
     std::map<std::uint32_t, Open> open_;
+    std::uint32_t given_up_ = 0;  ///< the last frame that was finished before all had done it: it does not begin again
     std::uint64_t frames_ = 0;
     Milliseconds last_{}, mean_{}, most_{}, sum_{};
     Histogram histogram_{};

@@ -39,10 +39,15 @@ Presents SwapCoordinator::rendered(NodeIndex node, std::uint32_t frame, Clock::t
     const auto found = members_.find(node);
     if (found == members_.end() || frame <= found->second.rendered) return {};
     auto& member = found->second;
+    const bool blocked = blocks(member);
     member.draw(member.rendered, frame);
     if (frame >= presented_) member.waited = true;
     rendered_spread_.note(frame, group_of(frame), now);
-    return advance(now);
+    blocking_ = blocking_ + (blocks(member) ? 1 : 0) - (blocked ? 1 : 0);
+    if (held_ || blocking_ == 0 || member.shows(presented_) > member.told) return advance(now);
+    // The group cannot go on, as with all but the last of a thousand reports of a frame.
+    if (!deadline_ && member.waited && member.rendered > presented_) deadline_ = now + limit_;
+    return {};
 }
 
 Presents SwapCoordinator::resume(NodeIndex node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now) {
@@ -144,7 +149,13 @@ bool SwapCoordinator::someone_ahead() const {
            });
 }
 
-std::size_t SwapCoordinator::group_of(std::uint32_t frame) const {
+std::size_t SwapCoordinator::group_of(std::uint32_t frame) {
+    Group& known = groups_[frame % groups_.size()];
+    if (known.size == 0 || known.frame != frame) known = {frame, count_group(frame)};
+    return known.size;
+}
+
+std::size_t SwapCoordinator::count_group(std::uint32_t frame) const {
     return static_cast<std::size_t>(
         std::ranges::count_if(members_, [&](const auto& m) { return m.second.takes_part(frame); }));
 }
@@ -164,15 +175,19 @@ void SwapCoordinator::tell(Presents& out, NodeIndex node, Member& member, std::u
 
 /// Not before a node has shown its last frame of a stay: it could draw no other one.
 void SwapCoordinator::forget_past() {
+    std::size_t forgotten = 0;
     for (auto& [node, member] : members_) {
-        std::erase_if(member.stays,
-                      [&](const Stay& stay) { return stay.until <= presented_ && member.told >= stay.until; });
+        forgotten += std::erase_if(
+            member.stays, [&](const Stay& stay) { return stay.until <= presented_ && member.told >= stay.until; });
     }
+    if (forgotten == 0) return;
+    groups_ = {};
     std::erase_if(members_, [](const auto& m) { return m.second.stays.empty(); });
 }
 
 Presents SwapCoordinator::advance(Clock::time_point now) {
     Presents out;
+    groups_ = {};
     allow_what_all_can_show();
     const auto frame = std::min(agreed(), ceiling());
     if (frame > presented_) {
@@ -187,6 +202,8 @@ Presents SwapCoordinator::advance(Clock::time_point now) {
     forget_past();
     if (!someone_ahead()) deadline_.reset();
     else if (!deadline_) deadline_ = now + limit_;
+    blocking_ =
+        static_cast<std::size_t>(std::ranges::count_if(members_, [&](const auto& m) { return blocks(m.second); }));
     return out;
 }
 

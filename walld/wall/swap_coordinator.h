@@ -17,6 +17,7 @@
 // one: then the group goes on to it, so that what is held is one picture.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -103,18 +104,27 @@ private:
         /// What it can show while the group shows `frame`.
         std::uint32_t shows(std::uint32_t frame) const;
     };
+    /// It keeps the group from the next frame.
+    bool blocks(const Member& member) const { return member.waited && member.cap() <= presented_; }
     Presents advance(Clock::time_point now);
     void allow_what_all_can_show();
     void forget_past();
     void count_frame(Clock::time_point now);
     void tell(Presents& out, NodeIndex node, Member& member, std::uint32_t frame, Clock::time_point now);
-    std::size_t group_of(std::uint32_t frame) const;
+    std::size_t group_of(std::uint32_t frame);
+    std::size_t count_group(std::uint32_t frame) const;
     std::uint32_t agreed() const;
     bool someone_ahead() const;
     std::uint32_t ceiling() const;
 
     Clock::duration limit_;  ///< for a late node
     std::map<NodeIndex, Member> members_;
+    std::size_t blocking_ = 0;  ///< members that do, as of the last advance() or report
+    struct Group {
+        std::uint32_t frame = 0;
+        std::size_t size = 0;  ///< 0: not known
+    };
+    std::array<Group, 8> groups_{};  ///< of the frames that were asked for last, since members_ was another one
     std::uint32_t presented_ = 0;
     std::optional<Clock::time_point> deadline_;
     bool held_;

@@ -58,11 +58,11 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
     const bool anew = std::exchange(node.described_anew, false);
     const bool same = !anew && node.incarnation > 0 && same_process(node.hello, hello);
     if (!same) {
-        if (node.missed) tell_gone(index);
+        if (missed_.contains(index)) tell_gone(index);
         ++node.incarnation;
         node.stats.Clear();
     }
-    node.missed.reset();
+    missed_.erase(index);
     node.up = node.duty == Duty::serves;
     node.hello = hello;
     welcome_node(index);
@@ -91,14 +91,14 @@ void Wall::node_leaves(NodeIndex node, Clock::time_point now, bool link_lost) {
     taking_tiles_.erase(node);
     if (moving_ && (moving_->from == node || moving_->to == node)) end_move(false, now);
     tell_tiles();
-    if (link_lost) nodes_[node].missed = now + kMissedLimit;
+    if (link_lost) missed_[node] = now + kMissedLimit;
     else tell_gone(node);
     for_each_surface(
         [&](const SurfaceKey& key, SurfaceEntry& surface) { present(key, surface.swap.lose(node, now), now); });
 }
 
 void Wall::tell_gone(NodeIndex node) {
-    nodes_[node].missed.reset();
+    missed_.erase(node);
     proto::NodeDown down;
     down.set_node(node.value);
     for (const auto& [id, session] : sessions_) out_.to_client(id, make(&proto::Envelope::mutable_node_down, down));
@@ -441,7 +441,7 @@ std::optional<Clock::time_point> Wall::next_deadline() const {
         for (const auto& [surface_id, surface] : session.surfaces) consider(surface.swap.deadline());
     }
     for (const auto& [id, session] : returning_) consider(session.until);
-    for (const Node& node : nodes_) consider(node.missed);
+    for (const auto& [node, until] : missed_) consider(until);
     if (moving_) consider(moving_->until);
     return out;
 }
@@ -449,8 +449,8 @@ std::optional<Clock::time_point> Wall::next_deadline() const {
 void Wall::tick(Clock::time_point now) {
     for_each_surface([&](const SurfaceKey& key, SurfaceEntry& surface) { present(key, surface.swap.tick(now), now); });
     end_overdue_groups(now);
-    for (const NodeIndex i : nodes_.ids())
-        if (nodes_[i].missed && now >= *nodes_[i].missed) tell_gone(i);
+    for (const auto& [node, until] : std::map(missed_))
+        if (now >= until) tell_gone(node);
     end_waiting_for_sessions(now);
     go_on_moving(now);
 }

@@ -80,10 +80,8 @@ struct Node {
 
     std::shared_ptr<const config::NodeConfig> config;
     Duty duty = Duty::serves;
-    bool up = false;      ///< programs may use it
-    bool silent = false;  ///< its link may be dead
-    /// Its link is lost, and it may be well: until then programs are not told that it is gone.
-    std::optional<std::chrono::steady_clock::time_point> missed;
+    bool up = false;                  ///< programs may use it
+    bool silent = false;              ///< its link may be dead
     bool described_anew = false;      ///< since it came last: what it has of sessions is for other tiles
     std::uint32_t tiles_version = 0;  ///< of the tiles that it was told last
     std::uint32_t incarnation = 0;    ///< 0: never seen
@@ -388,6 +386,7 @@ private:
     Outbox& out_;
     RandomBytes random_;
     IdVector<NodeIndex, Node> nodes_;
+    std::map<NodeIndex, Clock::time_point> missed_;  // whose link is lost: programs are not told before then
     std::set<NodeIndex> taking_tiles_;  // have been told of other tiles, and have not said that they draw for them
     bool tiles_untold_ = false;         // to programs
     std::optional<TileMove> moving_;

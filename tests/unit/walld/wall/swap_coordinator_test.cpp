@@ -272,6 +272,65 @@ TEST_F(Swap, NeverPresentsWhatANodeDoesNotHave) {
     }
 }
 
+/// Most reports do not look at the other nodes. One that looks at all of them after each event comes to the same.
+TEST_F(Swap, AReportLeavesNothingUndone) {
+    std::uint32_t seed = 7;
+    const auto random = [&](std::uint32_t below) { return (seed = seed * 1664525u + 1013904223u) / 65536u % below; };
+    SwapCoordinator quick(milliseconds(20), false), thorough(milliseconds(20), false);
+    std::map<NodeIndex, std::uint32_t> rendered;
+    std::set<NodeIndex> present;
+    std::uint32_t newest = 0;
+    bool held = false;
+    for (int i = 0; i < 50000; ++i) {
+        const NodeIndex node(random(6));
+        const auto both = [&](auto&& event) {
+            const Presents out = event(quick);
+            ASSERT_EQ(out, event(thorough));
+            if (held) return;
+            ASSERT_THAT(thorough.release(at(i)), IsEmpty());
+        };
+        switch (random(24)) {
+            case 0:
+                if (!present.erase(node)) present.insert(node);
+                both([&](SwapCoordinator& s) { return s.set_nodes(present, at(i)); });
+                break;
+            case 1: both([&](SwapCoordinator& s) { return s.tick(at(i)); }); break;
+            case 2:
+                held = random(4) == 0;
+                both([&](SwapCoordinator& s) { return held ? s.hold(at(i)) : s.release(at(i)); });
+                break;
+            case 3: both([&](SwapCoordinator& s) { return s.step(1, at(i)); }); break;
+            case 4:
+                if (!present.erase(node)) present.insert(node);
+                both([&, from = newest + random(3)](SwapCoordinator& s) { return s.move(present, from, at(i)); });
+                break;
+            case 5:
+                present.erase(node);
+                both([&](SwapCoordinator& s) { return s.lose(node, at(i)); });
+                break;
+            default: {
+                std::uint32_t& its = rendered[node];
+                its += random(10) == 0 ? 1 + random(3) : 1;
+                its = std::max(its, newest > 4 ? newest - 4 : 0);
+                newest = std::max(newest, its);
+                both([&](SwapCoordinator& s) { return s.rendered(node, its, at(i)); });
+            }
+        }
+        ASSERT_EQ(quick.presented(), thorough.presented()) << "event " << i;
+        ASSERT_EQ(quick.deadline(), thorough.deadline()) << "event " << i;
+        ASSERT_EQ(quick.rendered_spread().frames(), thorough.rendered_spread().frames()) << "event " << i;
+    }
+    EXPECT_GT(quick.presented(), 1000u);
+    EXPECT_GT(quick.timeouts(), 20u);
+}
+
+TEST_F(Swap, AFrameIsMeasuredOnceHoweverLateANodeIs) {
+    swap_.set_nodes({kLeft, kRight}, at(0));
+    for (std::uint32_t frame = 1; frame <= 20; ++frame) swap_.rendered(kLeft, frame, at(int(frame)));
+    for (std::uint32_t frame = 1; frame <= 20; ++frame) swap_.rendered(kRight, frame, at(int(100 + frame)));
+    EXPECT_EQ(swap_.rendered_spread().frames(), 20u);
+}
+
 TEST(Resume, BeginsWhereTheNodesAre) {
     const Clock::time_point now{};
     SwapCoordinator swap(std::chrono::milliseconds(250), false);
