@@ -129,7 +129,7 @@ bool parse(int argc, char** argv, Options& o) {
         else if (is("--mesh") && i + 1 < argc && std::sscanf(argv[++i], "%dx%d", &o.columns, &o.rows) == 2) continue;
         else return false;
     }
-    return o.frames > 0 && o.width > 0 && o.height > 0 && o.draws >= 0;
+    return o.frames > 0 && o.width > 0 && o.height > 0 && o.columns > 0 && o.rows > 0 && o.draws >= 0;
 }
 
 }  // namespace
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
     Options o;
     if (!parse(argc, argv, o)) {
         std::fputs(
-            "usage: buffers [--glsl] [--rewrite] [--draws N] [--frames N] [--size WxH]\n"
+            "usage: buffers [--glsl] [--rewrite] [--draws N] [--frames N] [--size WxH] [--mesh COLUMNSxROWS]\n"
             "Draws N frames of a lit mesh of 1,001,000 triangles in buffer objects and prints frames/s.\n"
             "--glsl: by a shader. --rewrite: its vertices are written anew for every frame.\n"
             "--mesh COLUMNSxROWS: of twice as many triangles; 1001x500 if it is not given.\n"

@@ -45,12 +45,12 @@ Result<void> run(const Options& options) {
     if (!listen) return tl::unexpected(listen.error());
     std::ofstream trace(options.trace);
     if (!trace) return fail(options.trace + ": cannot be written");
-    trace << "session\trank\tnode\tsurface\tframe\tlink\tplain\tcommands\tblocks\tvertices\n";
+    trace << "session\trank\tnode\tsurface\tframe\tlink\tplain\tcommands\tblocks\tvertices\tin_pieces\n";
     std::map<std::string, std::uint64_t> questions;
     const auto note = [&](const simulate::FrameTraffic& now) {
         trace << now.session.value << '\t' << now.rank << '\t' << now.node << '\t' << now.surface << '\t' << now.frame
               << '\t' << now.link_bytes << '\t' << now.traffic.plain_bytes << '\t' << now.traffic.commands << '\t'
-              << now.traffic.blocks << '\t' << now.traffic.vertices << '\n';
+              << now.traffic.blocks << '\t' << now.traffic.vertices << '\t' << now.traffic.in_pieces << '\n';
     };
     std::vector<std::string> names;
     for (const auto& node : wall->nodes) names.push_back(node.name);

@@ -3,7 +3,7 @@
 
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -22,25 +22,20 @@ namespace {
 constexpr std::uint32_t kMostHello = 4 << 10;  // bytes
 constexpr std::chrono::seconds kPingInterval{1};
 
-/// Frames that are said to the program, put together so that one write takes them.
-class Answers {
-public:
-    void add(wire::FrameKind kind, std::span<const std::byte> payload) {
-        const auto frame = wire::whole_frame(kind, payload);
-        bytes_.insert(bytes_.end(), frame.begin(), frame.end());
-    }
-    asio::awaitable<bool> send(net::Stream& stream) {
-        if (bytes_.empty()) co_return true;
-        const auto [error, sent] = co_await stream.write(asio::buffer(bytes_));
-        bytes_.clear();
-        co_return !error;
-    }
+}  // namespace
 
-private:
-    std::vector<std::byte> bytes_;
+/// A stream of a program's process.
+struct CountingWall::Peer {
+    Peer(net::StreamSocket socket)
+        : stream(std::move(socket)), source(stream, kMostHello, [this](std::size_t came) { bytes += came; }) {}
+    net::Stream stream;
+    std::uint64_t bytes = 0;  ///< that have come since the last frame
+    tileserver::FrameSource source;
+    std::vector<std::byte> to_say;
+    bool writing = false;
 };
 
-}  // namespace
+CountingWall::~CountingWall() = default;
 
 CountingWall::CountingWall(asio::any_io_executor executor, net::Address walld, net::Listener listener,
                            std::vector<std::string> names, proto::GlCaps caps, Events events)
@@ -63,7 +58,7 @@ Result<std::unique_ptr<CountingWall>> CountingWall::open(asio::any_io_executor e
 
 void CountingWall::start() {
     const auto take = [this](net::StreamSocket socket) {
-        net::spawn(executor_, "stream", serve(std::make_shared<net::Stream>(std::move(socket))));
+        net::spawn(executor_, "stream", serve(std::make_shared<Peer>(std::move(socket))));
     };
     net::keep_accepting(executor_, listener_, take, [this] { return stopping_; });
     net::spawn(executor_, "connect", connect());
@@ -75,7 +70,7 @@ void CountingWall::stop() {
     listener_.close();
     for (const Node& node : nodes_)
         if (node.link) node.link->close();
-    for (const auto& stream : streams_) stream->close();
+    for (const auto& peer : peers_) peer->stream.close();
 }
 
 // ---- walld ----
@@ -125,7 +120,8 @@ void CountingWall::take(std::uint32_t node, const proto::Envelope& envelope) {
             return nodes_[node].link->send(taken);
         }
         case proto::Envelope::kTicket:
-            tickets_[envelope.ticket().ticket()] = {node, SessionId(envelope.ticket().session())};
+            tickets_[envelope.ticket().ticket()] = {node, SessionId(envelope.ticket().session()),
+                                                    std::max(1u, envelope.ticket().members())};
             return;
         case proto::Envelope::kSessionEnd:
             std::erase_if(tickets_, [&](const auto& known) {
@@ -153,58 +149,85 @@ asio::awaitable<void> CountingWall::ping() {
 
 // ---- programs ----
 
-asio::awaitable<void> CountingWall::serve(std::shared_ptr<net::Stream> stream) {
-    std::uint64_t bytes = 0;
-    tileserver::FrameSource source(*stream, kMostHello, [&](std::size_t came) { bytes += came; });
-    auto frame = co_await source.next();
+void CountingWall::say(const std::shared_ptr<Peer>& peer, wire::FrameKind kind, std::span<const std::byte> payload) {
+    const auto frame = wire::whole_frame(kind, payload);
+    peer->to_say.insert(peer->to_say.end(), frame.begin(), frame.end());
+    if (!std::exchange(peer->writing, true)) net::spawn(executor_, "write", write(peer));
+}
+
+asio::awaitable<void> CountingWall::write(std::shared_ptr<Peer> peer) {
+    while (!peer->to_say.empty()) {
+        const auto now = std::exchange(peer->to_say, {});
+        const auto [error, sent] = co_await peer->stream.write(asio::buffer(now));
+        if (error) co_return;
+    }
+    peer->writing = false;
+}
+
+asio::awaitable<Result<CountingWall::Admitted>> CountingWall::greet(Peer& peer, std::uint32_t& rank) {
+    const auto frame = co_await peer.source.next();
     proto::DataHello hello;
     if (!frame || frame->kind != wire::FrameKind::hello ||
         !hello.ParseFromArray(frame->payload.data(), static_cast<int>(frame->payload.size())) ||
         hello.version() != glapi::kStreamVersion)
-        co_return events_.failed("a stream without a hello of this version");
+        co_return wall::fail("a stream without a hello of this version");
     const auto ticket = tickets_.find(hello.ticket());
-    if (ticket == tickets_.end()) co_return events_.failed("a stream without a ticket");
-    const Admitted admitted = ticket->second;
-    streams_.insert(stream);
-    Answers answers;
-    const std::uint32_t ends_with_connection = 0;  // and no ring: all comes over the socket
-    answers.add(wire::FrameKind::welcome, std::as_bytes(std::span(&ends_with_connection, 1)));
-    source.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
+    if (ticket == tickets_.end()) co_return wall::fail("a stream without a ticket");
+    rank = hello.rank();
+    peer.source.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
+    peer.bytes = 0;
+    co_return ticket->second;
+}
 
+asio::awaitable<void> CountingWall::serve(std::shared_ptr<Peer> peer) {
+    peers_.insert(peer);
+    FrameTraffic now;
+    const auto admitted = co_await greet(*peer, now.rank);
+    if (!admitted) co_return events_.failed(admitted.error().message);
+    now.session = admitted->session;
+    now.node = admitted->node;
+    const std::uint32_t ends_with_connection = 0;  // and no ring: all comes over the socket
+    say(peer, wire::FrameKind::welcome, std::as_bytes(std::span(&ends_with_connection, 1)));
     TrafficCount count;
-    FrameTraffic now{.session = admitted.session, .rank = hello.rank(), .node = admitted.node};
-    bytes = 0;
-    while (co_await answers.send(*stream)) {
-        frame = co_await source.next();
+    for (;;) {
+        const auto frame = co_await peer->source.next();
         if (!frame) break;
         if (frame->kind != wire::FrameKind::batch) continue;
         const auto seen = count.look(frame->payload);
         if (!seen) {
-            events_.failed(nodes_[admitted.node].name + ": " + seen.error().message);
+            events_.failed(nodes_[now.node].name + ": " + seen.error().message);
             break;
         }
         now.traffic += seen->traffic;
         for (const auto& question : seen->questions) {
             events_.question(question.name);
-            answers.add(wire::FrameKind::reply, std::as_bytes(std::span(&question.request, 1)));
+            say(peer, wire::FrameKind::reply, std::as_bytes(std::span(&question.request, 1)));
         }
         for (const auto& swap : seen->swaps) {
             now.surface = swap.surface.value;
             now.frame = swap.frame;
-            now.link_bytes = std::exchange(bytes, 0);
+            now.link_bytes = std::exchange(peer->bytes, 0);
             events_.frame(now);
             now.traffic = {};
-            const std::uint32_t words[] = {swap.surface.value, swap.frame};
-            answers.add(wire::FrameKind::swap_done, std::as_bytes(std::span(words)));
-            proto::Envelope envelope;
-            auto& rendered = *envelope.mutable_rendered();
-            rendered.set_session(admitted.session.value);
-            rendered.set_surface(swap.surface.value);
-            rendered.set_frame(swap.frame);
-            if (const auto& link = nodes_[admitted.node].link) link->send(envelope);
+            ended(peer, {now.node, now.session, now.surface, now.frame}, admitted->members);
         }
     }
-    streams_.erase(stream);
+    peers_.erase(peer);
+}
+
+void CountingWall::ended(const std::shared_ptr<Peer>& peer, const FrameOfGroup& frame, std::uint32_t members) {
+    auto& waiting = waiting_[frame];
+    waiting.push_back(peer);
+    if (waiting.size() < members) return;
+    const std::uint32_t words[] = {frame.surface, frame.frame};
+    for (const auto& member : waiting) say(member, wire::FrameKind::swap_done, std::as_bytes(std::span(words)));
+    waiting_.erase(frame);
+    proto::Envelope envelope;
+    auto& rendered = *envelope.mutable_rendered();
+    rendered.set_session(frame.session.value);
+    rendered.set_surface(frame.surface);
+    rendered.set_frame(frame.frame);
+    if (const auto& link = nodes_[frame.node].link) link->send(envelope);
 }
 
 }  // namespace wall::simulate

@@ -10,11 +10,13 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bench/simulate/traffic_count.h"
 #include "common/net/control_connection.h"
+#include "common/wire/frame.h"
 #include "proto/control.pb.h"
 
 namespace wall::simulate {
@@ -42,6 +44,7 @@ public:
     static Result<std::unique_ptr<CountingWall>> open(asio::any_io_executor executor, const net::Address& walld,
                                                       const net::Address& listen, std::vector<std::string> names,
                                                       proto::GlCaps caps, Events events);
+    ~CountingWall();
     void start();
     void stop();
 
@@ -53,13 +56,27 @@ private:
     struct Admitted {
         std::uint32_t node = 0;
         SessionId session;
+        std::uint32_t members = 1;  ///< of a parallel program
+    };
+    struct Peer;
+    /// A frame of one node that some members of a parallel program have ended.
+    struct FrameOfGroup {
+        std::uint32_t node = 0;
+        SessionId session;
+        std::uint32_t surface = 0, frame = 0;
+        auto operator<=>(const FrameOfGroup&) const = default;
     };
     CountingWall(asio::any_io_executor executor, net::Address walld, net::Listener listener,
                  std::vector<std::string> names, proto::GlCaps caps, Events events);
     asio::awaitable<void> connect();
     asio::awaitable<void> hear(std::uint32_t node);
     asio::awaitable<void> ping();
-    asio::awaitable<void> serve(std::shared_ptr<net::Stream> stream);
+    asio::awaitable<void> serve(std::shared_ptr<Peer> peer);
+    asio::awaitable<Result<Admitted>> greet(Peer& peer, std::uint32_t& rank);
+    /// The member that `peer` is has ended it; all hear of it when the last one has.
+    void ended(const std::shared_ptr<Peer>& peer, const FrameOfGroup& frame, std::uint32_t members);
+    void say(const std::shared_ptr<Peer>& peer, wire::FrameKind kind, std::span<const std::byte> payload);
+    asio::awaitable<void> write(std::shared_ptr<Peer> peer);
     proto::Envelope hello(const std::string& name) const;
     void take(std::uint32_t node, const proto::Envelope& envelope);
 
@@ -70,7 +87,8 @@ private:
     const proto::GlCaps caps_;
     const Events events_;
     std::map<std::string, Admitted> tickets_;
-    std::set<std::shared_ptr<net::Stream>> streams_;
+    std::set<std::shared_ptr<Peer>> peers_;
+    std::map<FrameOfGroup, std::vector<std::shared_ptr<Peer>>> waiting_;
     bool stopping_ = false;
 };
 

@@ -192,8 +192,9 @@ private:
 
     // ---- processors ----
 
+    std::uint32_t processors_of(std::uint32_t host) const { return scene_.hosts[host].runs_on.value_or(host); }
     void work(WorkerIndex worker, Seconds amount) {
-        const auto host = workers_[worker].host;
+        const auto host = processors_of(workers_[worker].host);
         workers_[worker].busy = true;
         hosts_[host].processors.add(worker, amount, now_);
         say_next_end(host);
@@ -394,6 +395,8 @@ Result<void> check(const Scene& scene) {
     for (std::size_t i = 0; i < scene.hosts.size(); ++i) {
         const Host& host = scene.hosts[i];
         const std::string where = "host " + std::to_string(i) + ": ";
+        if (host.runs_on && (*host.runs_on >= scene.hosts.size() || scene.hosts[*host.runs_on].runs_on))
+            return fail(where + "runs_on: expected a host with processors of its own");
         if (!(host.processors > 0)) return fail(where + "processors: expected more than 0");
         if (!(host.up > 0) || !(host.down > 0)) return fail(where + "up, down: expected bytes a second, more than 0");
     }

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "common/base/result.h"
@@ -26,6 +27,7 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 struct Host {
     double processors = 1;
     Rate up = kUnlimited, down = kUnlimited;  ///< to and from the switch; what stays on the host takes no time
+    std::optional<std::uint32_t> runs_on;     ///< the processors are that one's: several hosts on one machine
 };
 
 /// What a frame brings to one node.
@@ -71,7 +73,8 @@ struct ProgramFigures {
 };
 
 struct HostFigures {
-    double processors = 0, up = 0, down = 0;  ///< shares of what there is, 0 to 1, over the whole time
+    double processors = 0, up = 0, down = 0;  ///< shares of what there is, 0 to 1, over the whole time. Processors of
+                                              ///< another host count there
 };
 
 struct Figures {

@@ -17,12 +17,13 @@ using nlohmann::json;
 /// A line of a trace.
 struct Row {
     std::uint32_t rank = 0, node = 0, frame = 0;
-    double link = 0, vertices = 0;
+    double link = 0, vertices = 0, in_pieces = 0;
 };
 
 struct Cost {
     Seconds pack = 0, send_byte = 0, send_message = 0;
     Seconds draw_byte = 0, draw_vertex = 0, draw_frame = 0;
+    double piece_share = 1;
     double link_factor = 1, link_message = 0;
 };
 
@@ -31,7 +32,7 @@ Result<std::vector<Row>> read_trace(const std::string& file) {
     if (!in) return fail(file + ": cannot be read");
     std::string line;
     std::getline(in, line);
-    const std::string head = "session\trank\tnode\tsurface\tframe\tlink\tplain\tcommands\tblocks\tvertices";
+    const std::string head = "session\trank\tnode\tsurface\tframe\tlink\tplain\tcommands\tblocks\tvertices\tin_pieces";
     if (line != head) return fail(file + ":1: expected the columns " + head);
     std::vector<Row> rows;
     for (int number = 2; std::getline(in, line); ++number) {
@@ -39,8 +40,8 @@ Result<std::vector<Row>> read_trace(const std::string& file) {
         Row row;
         std::uint64_t session = 0, surface = 0, plain = 0, commands = 0, blocks = 0;
         words >> session >> row.rank >> row.node >> surface >> row.frame >> row.link >> plain >> commands >> blocks >>
-            row.vertices;
-        if (!words) return fail(file + ":" + std::to_string(number) + ": expected ten numbers");
+            row.vertices >> row.in_pieces;
+        if (!words) return fail(file + ":" + std::to_string(number) + ": expected eleven numbers");
         rows.push_back(row);
     }
     return rows;
@@ -55,6 +56,7 @@ Cost read_cost(const json& program) {
     cost.send_message = send.value("message", 0.0);
     cost.draw_byte = draw.value("byte", 0.0);
     cost.draw_vertex = draw.value("vertex", 0.0);
+    cost.piece_share = draw.value("piece_share", 1.0);
     cost.draw_frame = draw.value("frame", 0.0);
     cost.link_factor = link.value("byte", 1.0);
     cost.link_message = link.value("message", 0.0);
@@ -62,9 +64,10 @@ Cost read_cost(const json& program) {
 }
 
 Message message_of(const Row& row, std::uint32_t node, const Cost& cost) {
+    const double vertices = row.vertices - row.in_pieces * (1 - cost.piece_share);
     return {.node = node,
             .bytes = row.link * cost.link_factor + cost.link_message,
-            .draw = row.link * cost.draw_byte + row.vertices * cost.draw_vertex,
+            .draw = row.link * cost.draw_byte + vertices * cost.draw_vertex,
             .finish = cost.draw_frame};
 }
 
@@ -72,7 +75,7 @@ Message message_of(const Row& row, std::uint32_t node, const Cost& cost) {
 Result<std::vector<Member>> members_of(const json& program, const std::vector<Row>& rows) {
     const auto hosts = program.at("hosts").get<std::vector<std::uint32_t>>();
     const auto nodes = program.at("nodes").get<std::vector<std::uint32_t>>();
-    const auto skip = program.value("skip", 1u);
+    const auto skip = program.value("skip", 1u), last = program.value("last", ~0u);
     const Cost cost = read_cost(program);
     std::vector<std::map<std::uint32_t, Frame>> frames(hosts.size());
     for (const Row& row : rows) {
@@ -82,7 +85,7 @@ Result<std::vector<Member>> members_of(const json& program, const std::vector<Ro
         if (row.node >= nodes.size())
             return fail("its trace has node " + std::to_string(row.node) + ", and it has " +
                         std::to_string(nodes.size()) + " nodes");
-        if (row.frame <= skip) continue;
+        if (row.frame <= skip || row.frame > last) continue;
         Frame& frame = frames[row.rank][row.frame];
         frame.pack = cost.pack;
         frame.send += row.link * cost.send_byte + cost.send_message;
@@ -101,9 +104,11 @@ Result<std::vector<Member>> members_of(const json& program, const std::vector<Ro
 Result<Scene> scene_of(const json& file, const std::filesystem::path& folder) {
     Scene scene;
     for (const json& group : file.at("hosts")) {
-        const Host host{.processors = group.value("processors", 1.0),
-                        .up = group.value("up", kUnlimited),
-                        .down = group.value("down", kUnlimited)};
+        Host host{.processors = group.value("processors", 1.0),
+                  .up = group.value("up", kUnlimited),
+                  .down = group.value("down", kUnlimited),
+                  .runs_on = {}};
+        if (group.contains("runs_on")) host.runs_on = group["runs_on"].get<std::uint32_t>();
         scene.hosts.insert(scene.hosts.end(), group.value("count", std::size_t{1}), host);
     }
     scene.nodes = file.at("nodes").get<std::vector<std::uint32_t>>();

@@ -2,14 +2,21 @@
 // A scene of the model as a file: JSON that says which machines, nodes and programs there are, what a byte and a vertex
 // cost, and which counts (counting_nodes) say what the programs send.
 //
-//   { "hosts": [{"count": 1, "processors": 2, "up": 125e6, "down": 125e6}, ...],     no rate: any
-//     "nodes": [HOST, ...],
-//     "latency": SECONDS, "frames": N, "warm_up": N, "piece": BYTES,                 each as in model.h if it is
-//     missing "programs": [{"trace": FILE, "hosts": [HOST, ...],                             a host for each rank
-//                   "nodes": [NODE, ...],                                            which the trace's nodes are here
-//                   "ahead": N, "skip": N,                                           of the trace's frames: 1 if
-//                   missing "pack": SECONDS, "send": {"byte": S, "message": S}, "draw": {"byte": S, "vertex": S,
-//                   "frame": S}, "link": {"byte": FACTOR, "message": BYTES}}, ...] }
+//   { "hosts": [HOST, ...], "nodes": [number of a host, ...], "programs": [PROGRAM, ...],
+//     "latency": SECONDS, "frames": N, "warm_up": N, "piece": BYTES }
+//
+//   HOST := { "count": N, "processors": N, "up": BYTES A SECOND, "down": BYTES A SECOND,
+//             "runs_on": number of the host whose processors it has }
+//   PROGRAM := { "trace": FILE, "skip": N, "last": N,      its frames N + 1 to N; else 2 to the last
+//                "hosts": [number of a host, ...],         of each rank
+//                "nodes": [number of a node, ...],         which the trace's nodes are here
+//                "ahead": N, "pack": SECONDS,
+//                "send": {"byte": SECONDS, "message": SECONDS},
+//                "draw": {"byte": SECONDS, "vertex": SECONDS, "frame": SECONDS, "piece_share": 0 to 1},
+//                "link": {"byte": BYTES, "message": BYTES} }
+//
+// piece_share: how much of a draw in pieces a node does not leave out. All but "hosts", "nodes", "programs" and a
+// program's "trace", "hosts" and "nodes" may be missing: as in model.h then, and what it costs is nothing.
 #pragma once
 
 #include <string>

@@ -59,6 +59,7 @@ void Traffic::operator+=(const Traffic& other) {
     commands += other.commands;
     blocks += other.blocks;
     vertices += other.vertices;
+    in_pieces += other.in_pieces;
 }
 
 Result<TrafficCount::Seen> TrafficCount::look(std::span<const std::byte> payload) {
@@ -98,7 +99,10 @@ Result<void> TrafficCount::count(glstate::CommandWalk walk, Seen& seen) {
 }
 
 void TrafficCount::count(const glstate::Command& now, Seen& seen) {
-    seen.traffic.vertices += drawn(now);
+    const std::uint64_t vertices = drawn(now);
+    seen.traffic.vertices += vertices;
+    if ((now.op == Op::DrawArrays || now.op == Op::DrawElements) && now.word(1) != 0)
+        seen.traffic.in_pieces += vertices;
     if (now.op == Op::Swap) seen.swaps.push_back({SurfaceId(now.word(0)), now.word(1)});
     if (now.op == Op::RunCall) {
         const auto known = run_vertices_.find(now.word(0));

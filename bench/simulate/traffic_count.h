@@ -17,7 +17,8 @@ namespace wall::simulate {
 struct Traffic {
     std::uint64_t plain_bytes = 0;  ///< of batches, as they are before coding
     std::uint64_t commands = 0, blocks = 0;
-    std::uint64_t vertices = 0;  ///< in blocks and lists called there, and named by draws from arrays
+    std::uint64_t vertices = 0;   ///< in blocks and lists called there, and named by draws from arrays
+    std::uint64_t in_pieces = 0;  ///< of these, in draws of which the node leaves out what it does not show
     void operator+=(const Traffic& other);
 };
 

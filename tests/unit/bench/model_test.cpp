@@ -83,6 +83,14 @@ TEST(Model, ProcessorsAreSharedEvenly) {
     EXPECT_NEAR(rate_of(scene), 100, 1e-3);
 }
 
+TEST(Model, SeveralHostsMayRunOnOneMachine) {
+    Scene scene = one_program(4, {.pack = 0.02, .messages = {{0, 1, 0.02}, {1, 1, 0.02}, {2, 1, 0.02}, {3, 1, 0.02}}});
+    for (std::uint32_t host = 1; host <= 4; ++host) scene.hosts[host].runs_on = 0;
+    EXPECT_NEAR(rate_of(scene), 20, 0.1);  // 0.1 s of work on two processors
+    scene.hosts[2].down = 10;              // and each has its own link
+    EXPECT_NEAR(rate_of(scene), 10, 0.1);
+}
+
 TEST(Model, ProgramsShareANodeInTurn) {
     Scene scene = one_program(1, {.messages = {{.node = 0, .draw = 0.01}}});
     scene.hosts.push_back({});
@@ -156,6 +164,8 @@ TEST(Model, SaysWhatIsOutOfRange) {
               "program 0: there is no node 1");
     EXPECT_EQ(said([](Scene& s) { s.programs[0].members[0].frames[0].pack = -1; }),
               "program 0: pack, send: expected seconds, at least 0");
+    EXPECT_EQ(said([](Scene& s) { s.hosts[1].runs_on = 1; }),
+              "host 1: runs_on: expected a host with processors of its own");
     EXPECT_EQ(said([](Scene& s) { s.programs[0].members.clear(); }), "program 0: expected a member at least");
 }
 

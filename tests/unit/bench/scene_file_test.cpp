@@ -10,7 +10,8 @@
 namespace wall::simulate {
 namespace {
 
-constexpr const char* kHead = "session\trank\tnode\tsurface\tframe\tlink\tplain\tcommands\tblocks\tvertices\n";
+constexpr const char* kHead =
+    "session\trank\tnode\tsurface\tframe\tlink\tplain\tcommands\tblocks\tvertices\tin_pieces\n";
 
 class SceneFile : public testing::Test {
 protected:
@@ -18,10 +19,11 @@ protected:
         std::filesystem::create_directories(folder_);
         // Frame 1 brings what later ones do not.
         write("trace.tsv", std::string(kHead) +
-                               "1\t0\t0\t9\t1\t5000\t5000\t1\t1\t0\n"
-                               "1\t0\t0\t9\t2\t100\t400\t7\t2\t30\n"
-                               "1\t0\t1\t9\t2\t300\t600\t7\t2\t10\n"
-                               "1\t0\t1\t9\t3\t200\t600\t7\t2\t10\n");
+                               "1\t0\t0\t9\t1\t5000\t5000\t1\t1\t0\t0\n"
+                               "1\t0\t0\t9\t2\t100\t400\t7\t2\t30\t20\n"
+                               "1\t0\t1\t9\t2\t300\t600\t7\t2\t10\t0\n"
+                               "1\t0\t1\t9\t3\t200\t600\t7\t2\t10\t0\n"
+                               "1\t0\t1\t9\t4\t200\t600\t7\t2\t10\t0\n");
     }
     ~SceneFile() override { std::filesystem::remove_all(folder_); }
     std::string write(const std::string& name, const std::string& content) {
@@ -41,8 +43,8 @@ protected:
 TEST_F(SceneFile, PutsCountsAndCostsTogether) {
     const auto scene = read_scene(write("scene.json", R"({
         "hosts": [{"processors": 2, "up": 1000}, {"count": 2, "down": 500}], "nodes": [1, 2, 2], "latency": 0.5,
-        "frames": 20, "programs": [{"trace": "trace.tsv", "hosts": [0], "nodes": [2, 0], "ahead": 1, "pack": 0.25,
-            "send": {"byte": 0.5, "message": 3}, "draw": {"byte": 2, "vertex": 1, "frame": 7},
+        "frames": 20, "programs": [{"trace": "trace.tsv", "hosts": [0], "nodes": [2, 0], "last": 3, "ahead": 1, "pack": 0.25,
+            "send": {"byte": 0.5, "message": 3}, "draw": {"byte": 2, "vertex": 1, "frame": 7, "piece_share": 0.25},
             "link": {"byte": 1.5, "message": 40}}]})"));
     ASSERT_TRUE(scene) << scene.error().message;
     ASSERT_EQ(scene->hosts.size(), 3u);
@@ -62,7 +64,7 @@ TEST_F(SceneFile, PutsCountsAndCostsTogether) {
     ASSERT_EQ(frames[0].messages.size(), 2u);
     EXPECT_EQ(frames[0].messages[0].node, 2u);
     EXPECT_EQ(frames[0].messages[0].bytes, 190);
-    EXPECT_EQ(frames[0].messages[0].draw, 230);
+    EXPECT_EQ(frames[0].messages[0].draw, 200 + 10 + 5);
     EXPECT_EQ(frames[0].messages[0].finish, 7);
     EXPECT_EQ(frames[0].messages[1].node, 0u);
     EXPECT_EQ(frames[1].messages.at(0).bytes, 340);
@@ -78,7 +80,7 @@ TEST_F(SceneFile, SaysWhatIsWrongWhere) {
               "scene.json: program 0: its trace has no frames of rank 1");
     write("trace.tsv", std::string(kHead) + "1\t0\tx\n");
     EXPECT_EQ(error_of(hosts + R"(trace.tsv", "hosts": [0], "nodes": [0, 1]}]})"),
-              "scene.json: " + (folder_ / "trace.tsv").string() + ":2: expected ten numbers");
+              "scene.json: " + (folder_ / "trace.tsv").string() + ":2: expected eleven numbers");
     EXPECT_THAT(error_of("{"), testing::StartsWith("scene.json: [json.exception.parse_error"));
     EXPECT_THAT(error_of("{}"), testing::HasSubstr("'hosts' not found"));
 }

@@ -36,6 +36,7 @@ TEST(TrafficCount, CountsWhatAFrameDraws) {
     three_vertices(inside);
     block(buffer, inside);
     pack::DrawArrays(buffer, ClientName(1), ClientName(), 4, 0, 300);
+    pack::DrawElements(buffer, ClientName(1), ClientName(9), 4, 60, 0x1403, 0, 0);
     pack::DrawElementsInstanced(buffer, ClientName(1), 4, 30, 0x1403, 0, 0, 5, 0, 0);
     pack::Swap(buffer, SurfaceId(7), 3);
     TrafficCount count;
@@ -44,8 +45,9 @@ TEST(TrafficCount, CountsWhatAFrameDraws) {
     ASSERT_TRUE(seen) << seen.error().message;
     EXPECT_EQ(seen->traffic.plain_bytes, payload.size());
     EXPECT_EQ(seen->traffic.blocks, 1u);
-    EXPECT_EQ(seen->traffic.vertices, 3u + 300 + 150);
-    EXPECT_EQ(seen->traffic.commands, 4u + 5);
+    EXPECT_EQ(seen->traffic.vertices, 3u + 300 + 60 + 150);
+    EXPECT_EQ(seen->traffic.in_pieces, 60u);
+    EXPECT_EQ(seen->traffic.commands, 5u + 5);
     ASSERT_EQ(seen->swaps.size(), 1u);
     EXPECT_EQ(seen->swaps[0].surface, SurfaceId(7));
     EXPECT_EQ(seen->swaps[0].frame, 3u);
