@@ -3,7 +3,8 @@
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
 #                                         order, switch, pack, mesh, buffers, late_node, notice, gpus, views, march,
-#                                         off_wall, traffic, share, transport, coding, fair, streams, codec)
+#                                         off_wall, traffic, share, transport, coding, fair, streams, codec,
+#                                         simulate)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -11,7 +12,7 @@ json="" filter="."
 while (($#)); do
   case "$1" in
     --json) json="$(realpath -m "$2")"; shift 2 ;;
-    -h|--help) sed -n '3,6s/^# //p' "$0"; exit 0 ;;
+    -h|--help) sed -n '3,7s/^# //p' "$0"; exit 0 ;;
     *) filter="$1"; shift ;;
   esac
 done
@@ -53,6 +54,7 @@ run coding bench/coding.py --json "$results/coding.json"
 run fair bench/fair.py --json "$results/fair.json"
 run streams bench/stream_cost.py --json "$results/streams.json"
 run codec bench/codec.py --json "$results/codec.json"
+run simulate bench/simulate.py --json "$results/simulate.json"
 
 if [[ -n "$json" ]]; then
   /usr/bin/python3 - "$results" "$json" <<'PYTHON'

@@ -82,8 +82,8 @@ def parallel(known: Costs, folder: Path, x: XServer) -> list[dict]:
     """A7.4, figure 11: G processes and R render nodes on 100 Mbit/s."""
     subject = large_march()
     known = dataclasses.replace(known, draw=known.draw | {subject.name: known.draw["march"]})
-    print("\nforetold, beside figure 11 of AnyGL: frames a second of a parallel program of G processes (rows) on R nodes "
-          "(columns),\n100 Mbit/s, a machine for each")
+    print("\nforetold, beside figure 11 of AnyGL: frames a second of a parallel program of G processes (rows) on R "
+          "nodes\n(columns), 100 Mbit/s, a machine for each")
     print(f"{'':6}" + "".join(f"{nodes:>9}" for nodes in PROCESSES))
     rows = []
     for ranks in PROCESSES:
@@ -113,8 +113,8 @@ def many(of: list[Subject], known: Costs, folder: Path, x: XServer) -> dict:
     row = {"tiles": tiles, "programs": MANY_PROGRAMS, "computing": said["computing"], "events": said["events"],
            "time": said["time"], "least": min(rates), "median": statistics.median(rates), "busiest": said["busiest"]}
     print(f"\n{MANY_PROGRAMS:,} programs on {tiles:,} tiles, 1 Gbit/s: {said['computing']:.1f} s of computing for "
-          f"{said['time']:.2f} s and {said['events']:,} events; frames a second of a program: {min(rates):.1f} at least, "
-          f"{statistics.median(rates):.1f} in the middle")
+          f"{said['time']:.2f} s and {said['events']:,} events; frames a second of a program: {min(rates):.1f} at "
+          f"least, {statistics.median(rates):.1f} in the middle")
     return row
 
 
@@ -127,8 +127,8 @@ def pictures(folder: Path, results: dict) -> None:
              chart(f"{name}: a machine for each tile", "tiles", "frames a second", lines,
                    {row["side"]**2: f"{row['side']}x{row['side']}" for row in own}))
     lines = [Line(f"{nodes} node{'s' if nodes > 1 else ''}",
-                  [(row["processes"], row["frames_per_second"]) for row in results["parallel"] if row["nodes"] == nodes])
-             for nodes in PROCESSES]
+                  [(row["processes"], row["frames_per_second"]) for row in results["parallel"]
+                   if row["nodes"] == nodes]) for nodes in PROCESSES]
     save(folder / "simulated-parallel.svg",
          chart("march, 61,000 triangles a frame, 100 Mbit/s", "processes", "frames a second", lines,
                {ranks: str(ranks) for ranks in PROCESSES}))

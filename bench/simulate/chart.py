@@ -51,8 +51,9 @@ def chart(title: str, x_name: str, y_name: str, lines: list[Line], x_labels: dic
         if not line.measured:
             path = " ".join(f"{x:.1f},{y:.1f}" for x, y in places)
             out.append(f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2"/>')
-        out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{4.5 if line.measured else 3}" '
-                f'fill="{color if line.measured else "white"}" stroke="{color}" stroke-width="1.5"/>' for x, y in places]
+        radius, fill = (4.5, color) if line.measured else (3, "white")
+        out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="{fill}" stroke="{color}" stroke-width="1.5"/>'
+                for x, y in places]
         end = _free(places[-1][1], ends)
         ends.append(end)
         out.append(_text(WIDTH - RIGHT + 10, end + 4, line.name, f'fill="{color}"'))

@@ -48,9 +48,9 @@ Result<void> run(const Options& options) {
     trace << "session\trank\tnode\tsurface\tframe\tlink\tplain\tcommands\tblocks\tvertices\tin_pieces\n";
     std::map<std::string, std::uint64_t> questions;
     const auto note = [&](const simulate::FrameTraffic& now) {
-        trace << now.session.value << '\t' << now.rank << '\t' << now.node << '\t' << now.surface << '\t' << now.frame
-              << '\t' << now.link_bytes << '\t' << now.traffic.plain_bytes << '\t' << now.traffic.commands << '\t'
-              << now.traffic.blocks << '\t' << now.traffic.vertices << '\t' << now.traffic.in_pieces << '\n';
+        trace << now.session.value << '\t' << now.rank << '\t' << now.node.value << '\t' << now.surface.value << '\t'
+              << now.frame << '\t' << now.link_bytes << '\t' << now.traffic.plain_bytes << '\t' << now.traffic.commands
+              << '\t' << now.traffic.blocks << '\t' << now.traffic.vertices << '\t' << now.traffic.in_pieces << '\n';
     };
     std::vector<std::string> names;
     for (const auto& node : wall->nodes) names.push_back(node.name);

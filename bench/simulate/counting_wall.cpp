@@ -90,7 +90,8 @@ proto::Envelope CountingWall::hello(const std::string& name) const {
 
 /// One after the other, as quickly as walld takes them: who waits long to be heard there makes room for others.
 asio::awaitable<void> CountingWall::connect() {
-    for (std::uint32_t node = 0; node < nodes_.size() && !stopping_; ++node) {
+    for (const NodeIndex node : nodes_.ids()) {
+        if (stopping_) co_return;
         auto link = co_await net::ControlConnection::connect(walld_, "*");
         if (!link) co_return events_.failed("no walld: " + link.error().message);
         (*link)->send(hello(nodes_[node].name));
@@ -102,7 +103,7 @@ asio::awaitable<void> CountingWall::connect() {
     }
 }
 
-asio::awaitable<void> CountingWall::hear(std::uint32_t node) {
+asio::awaitable<void> CountingWall::hear(NodeIndex node) {
     const auto link = nodes_[node].link;
     while (!stopping_) {
         const auto envelope = co_await link->receive();
@@ -112,7 +113,7 @@ asio::awaitable<void> CountingWall::hear(std::uint32_t node) {
     }
 }
 
-void CountingWall::take(std::uint32_t node, const proto::Envelope& envelope) {
+void CountingWall::take(NodeIndex node, const proto::Envelope& envelope) {
     switch (envelope.message_case()) {
         case proto::Envelope::kNodeWelcome: {
             proto::Envelope taken;
@@ -204,7 +205,7 @@ asio::awaitable<void> CountingWall::serve(std::shared_ptr<Peer> peer) {
             say(peer, wire::FrameKind::reply, std::as_bytes(std::span(&question.request, 1)));
         }
         for (const auto& swap : seen->swaps) {
-            now.surface = swap.surface.value;
+            now.surface = swap.surface;
             now.frame = swap.frame;
             now.link_bytes = std::exchange(peer->bytes, 0);
             events_.frame(now);
@@ -219,13 +220,13 @@ void CountingWall::ended(const std::shared_ptr<Peer>& peer, const FrameOfGroup& 
     auto& waiting = waiting_[frame];
     waiting.push_back(peer);
     if (waiting.size() < members) return;
-    const std::uint32_t words[] = {frame.surface, frame.frame};
+    const std::uint32_t words[] = {frame.surface.value, frame.frame};
     for (const auto& member : waiting) say(member, wire::FrameKind::swap_done, std::as_bytes(std::span(words)));
     waiting_.erase(frame);
     proto::Envelope envelope;
     auto& rendered = *envelope.mutable_rendered();
     rendered.set_session(frame.session.value);
-    rendered.set_surface(frame.surface);
+    rendered.set_surface(frame.surface.value);
     rendered.set_frame(frame.frame);
     if (const auto& link = nodes_[frame.node].link) link->send(envelope);
 }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/simulate/traffic_count.h"
+#include "common/base/id_vector.h"
 #include "common/net/control_connection.h"
 #include "common/wire/frame.h"
 #include "proto/control.pb.h"
@@ -26,7 +27,10 @@ namespace asio = boost::asio;
 /// What one process of a program has sent one node for one frame.
 struct FrameTraffic {
     SessionId session;
-    std::uint32_t rank = 0, node = 0, surface = 0, frame = 0;
+    std::uint32_t rank = 0;
+    NodeIndex node;
+    SurfaceId surface;
+    std::uint32_t frame = 0;
     std::uint64_t link_bytes = 0;  ///< all that came over the stream, coded or not
     Traffic traffic;
 };
@@ -54,22 +58,23 @@ private:
         std::shared_ptr<net::ControlConnection> link;
     };
     struct Admitted {
-        std::uint32_t node = 0;
+        NodeIndex node;
         SessionId session;
         std::uint32_t members = 1;  ///< of a parallel program
     };
     struct Peer;
     /// A frame of one node that some members of a parallel program have ended.
     struct FrameOfGroup {
-        std::uint32_t node = 0;
+        NodeIndex node;
         SessionId session;
-        std::uint32_t surface = 0, frame = 0;
+        SurfaceId surface;
+        std::uint32_t frame = 0;
         auto operator<=>(const FrameOfGroup&) const = default;
     };
     CountingWall(asio::any_io_executor executor, net::Address walld, net::Listener listener,
                  std::vector<std::string> names, proto::GlCaps caps, Events events);
     asio::awaitable<void> connect();
-    asio::awaitable<void> hear(std::uint32_t node);
+    asio::awaitable<void> hear(NodeIndex node);
     asio::awaitable<void> ping();
     asio::awaitable<void> serve(std::shared_ptr<Peer> peer);
     asio::awaitable<Result<Admitted>> greet(Peer& peer, std::uint32_t& rank);
@@ -78,12 +83,12 @@ private:
     void say(const std::shared_ptr<Peer>& peer, wire::FrameKind kind, std::span<const std::byte> payload);
     asio::awaitable<void> write(std::shared_ptr<Peer> peer);
     proto::Envelope hello(const std::string& name) const;
-    void take(std::uint32_t node, const proto::Envelope& envelope);
+    void take(NodeIndex node, const proto::Envelope& envelope);
 
     asio::any_io_executor executor_;
     const net::Address walld_;
     net::Listener listener_;
-    std::vector<Node> nodes_;
+    IdVector<NodeIndex, Node> nodes_;
     const proto::GlCaps caps_;
     const Events events_;
     std::map<std::string, Admitted> tickets_;

@@ -16,7 +16,8 @@ using WorkerIndex = std::uint32_t;
 
 /// A part of a message that goes as one: through the sender's thread, the two links and the node's queue.
 struct Piece {
-    std::uint32_t program = 0, member = 0, frame = 0, node = 0;
+    std::uint32_t program = 0, member = 0, frame = 0;
+    NodeIndex node;
     double bytes = 0;
     Seconds send = 0, draw = 0;
 };
@@ -90,7 +91,6 @@ struct Worker {
     std::deque<Piece> queue = {};
     bool busy = false;
     std::uint32_t program = 0, member = 0;
-    std::uint32_t node = 0;
 };
 
 /// A process that packs: where it is in its frame.
@@ -111,7 +111,7 @@ struct FrameState {
     std::uint32_t members_to_begin = 0, members_to_pack = 0;
     std::uint64_t pieces_left = 0;
     Seconds begun = kUnlimited;
-    std::map<std::uint32_t, std::pair<std::uint64_t, Seconds>> nodes;  ///< pieces left and what ends the frame there
+    std::map<NodeIndex, std::pair<std::uint64_t, Seconds>> nodes;  ///< pieces left and what ends the frame there
 };
 
 struct ProgramState {
@@ -146,8 +146,8 @@ public:
     explicit Model(const Scene& scene) : scene_(scene) {
         for (const Host& host : scene.hosts)
             hosts_.push_back({SharedProcessors(host.processors), {.rate = host.up}, {.rate = host.down}, 0});
-        for (std::uint32_t n = 0; n < scene.nodes.size(); ++n)
-            node_workers_.push_back(add_worker({.kind = Worker::Kind::draws, .host = scene.nodes[n], .node = n}));
+        for (const std::uint32_t host : scene.nodes)
+            node_workers_.push_back(add_worker({.kind = Worker::Kind::draws, .host = host}));
         for (std::uint32_t p = 0; p < scene.programs.size(); ++p) {
             auto& state = programs_.emplace_back();
             for (std::uint32_t m = 0; m < scene.programs[p].members.size(); ++m) {
@@ -377,7 +377,7 @@ private:
     const Scene& scene_;
     std::vector<HostState> hosts_;
     std::vector<Worker> workers_;
-    std::vector<WorkerIndex> node_workers_;
+    IdVector<NodeIndex, WorkerIndex> node_workers_;
     std::vector<ProgramState> programs_;
     std::priority_queue<Event, std::vector<Event>, Later> events_;
     Seconds now_ = 0;
@@ -400,9 +400,10 @@ Result<void> check(const Scene& scene) {
         if (!(host.processors > 0)) return fail(where + "processors: expected more than 0");
         if (!(host.up > 0) || !(host.down > 0)) return fail(where + "up, down: expected bytes a second, more than 0");
     }
-    for (std::size_t i = 0; i < scene.nodes.size(); ++i)
-        if (scene.nodes[i] >= scene.hosts.size())
-            return fail("node " + std::to_string(i) + ": there is no host " + std::to_string(scene.nodes[i]));
+    for (const NodeIndex node : scene.nodes.ids())
+        if (scene.nodes[node] >= scene.hosts.size())
+            return fail("node " + std::to_string(node.value) + ": there is no host " +
+                        std::to_string(scene.nodes[node]));
     for (std::size_t p = 0; p < scene.programs.size(); ++p) {
         const Program& program = scene.programs[p];
         const std::string where = "program " + std::to_string(p) + ": ";
@@ -416,8 +417,8 @@ Result<void> check(const Scene& scene) {
                 if (!is_amount(frame.pack) || !is_amount(frame.send))
                     return fail(where + "pack, send: expected seconds, at least 0");
                 for (const Message& message : frame.messages) {
-                    if (message.node >= scene.nodes.size())
-                        return fail(where + "there is no node " + std::to_string(message.node));
+                    if (!scene.nodes.contains(message.node))
+                        return fail(where + "there is no node " + std::to_string(message.node.value));
                     if (!is_amount(message.bytes) || !is_amount(message.draw) || !is_amount(message.finish))
                         return fail(where + "bytes, draw, finish: expected amounts, at least 0");
                 }

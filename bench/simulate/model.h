@@ -14,6 +14,8 @@
 #include <optional>
 #include <vector>
 
+#include "common/base/id_vector.h"
+#include "common/base/ids.h"
 #include "common/base/result.h"
 
 namespace wall::simulate {
@@ -32,7 +34,7 @@ struct Host {
 
 /// What a frame brings to one node.
 struct Message {
-    std::uint32_t node = 0;
+    NodeIndex node;      ///< in Scene::nodes
     double bytes = 0;    ///< on the link, with what goes around them
     Seconds draw = 0;    ///< of the node
     Seconds finish = 0;  ///< of the node, once all that the frame brings it has come
@@ -57,7 +59,7 @@ struct Program {
 
 struct Scene {
     std::vector<Host> hosts;
-    std::vector<std::uint32_t> nodes;  ///< the host of each
+    IdVector<NodeIndex, std::uint32_t> nodes;  ///< the host of each
     std::vector<Program> programs;
     Seconds latency = 0;        ///< from one host to another, on top of the bytes
     double piece = 256 << 10;   ///< bytes of a message that are sent as soon as they are packed

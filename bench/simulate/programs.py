@@ -61,4 +61,5 @@ def subjects(folder: Path, x: XServer) -> list[Subject]:
 def large_march() -> Subject:
     """For many processes."""
     return Subject("march-64", [str(build_folder() / "examples" / "march"), "--size", "800x600", "--cells", "64",
-                                "--frames", ENDLESS], "examples/march, 64 cells a side", parallel=True, first=4, frames=16)
+                                "--frames", ENDLESS], "examples/march, 64 cells a side", parallel=True, first=4,
+                   frames=16)

@@ -63,7 +63,7 @@ Cost read_cost(const json& program) {
     return cost;
 }
 
-Message message_of(const Row& row, std::uint32_t node, const Cost& cost) {
+Message message_of(const Row& row, NodeIndex node, const Cost& cost) {
     const double vertices = row.vertices - row.in_pieces * (1 - cost.piece_share);
     return {.node = node,
             .bytes = row.link * cost.link_factor + cost.link_message,
@@ -89,7 +89,7 @@ Result<std::vector<Member>> members_of(const json& program, const std::vector<Ro
         Frame& frame = frames[row.rank][row.frame];
         frame.pack = cost.pack;
         frame.send += row.link * cost.send_byte + cost.send_message;
-        frame.messages.push_back(message_of(row, nodes[row.node], cost));
+        frame.messages.push_back(message_of(row, NodeIndex(nodes[row.node]), cost));
     }
     std::vector<Member> members;
     for (std::size_t rank = 0; rank < hosts.size(); ++rank) {
@@ -111,7 +111,7 @@ Result<Scene> scene_of(const json& file, const std::filesystem::path& folder) {
         if (group.contains("runs_on")) host.runs_on = group["runs_on"].get<std::uint32_t>();
         scene.hosts.insert(scene.hosts.end(), group.value("count", std::size_t{1}), host);
     }
-    scene.nodes = file.at("nodes").get<std::vector<std::uint32_t>>();
+    for (const auto host : file.at("nodes").get<std::vector<std::uint32_t>>()) scene.nodes.push_back(host);
     scene.latency = file.value("latency", scene.latency);
     scene.frames = file.value("frames", scene.frames);
     scene.warm_up = file.value("warm_up", scene.warm_up);

@@ -13,7 +13,7 @@ from counted import Count
 from wall import build_folder
 
 BITS = 8
-LATENCY = 100e-6  # seconds: two sockets and a switch (DESIGN, section 9: 82 us for a round trip over TCP on one machine)
+LATENCY = 100e-6  # seconds: two sockets and a switch
 PROCESSORS = 2  # of every machine
 
 

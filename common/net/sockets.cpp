@@ -19,7 +19,7 @@
 namespace wall::net {
 namespace {
 
-constexpr int kBacklog = 1024;  // all nodes and programs of a wall, which may come at once
+constexpr int kBacklog = 1024;        // all nodes and programs of a wall, which may come at once
 constexpr mode_t kSocketMode = 0666;  // who may speak is decided by peer_of(), which can say why
 
 tl::unexpected<Error> system_error(const Address& address, const char* what, int error) {

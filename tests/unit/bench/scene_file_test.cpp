@@ -43,16 +43,16 @@ protected:
 TEST_F(SceneFile, PutsCountsAndCostsTogether) {
     const auto scene = read_scene(write("scene.json", R"({
         "hosts": [{"processors": 2, "up": 1000}, {"count": 2, "down": 500}], "nodes": [1, 2, 2], "latency": 0.5,
-        "frames": 20, "programs": [{"trace": "trace.tsv", "hosts": [0], "nodes": [2, 0], "last": 3, "ahead": 1, "pack": 0.25,
-            "send": {"byte": 0.5, "message": 3}, "draw": {"byte": 2, "vertex": 1, "frame": 7, "piece_share": 0.25},
-            "link": {"byte": 1.5, "message": 40}}]})"));
+        "frames": 20, "programs": [{"trace": "trace.tsv", "hosts": [0], "nodes": [2, 0], "last": 3, "ahead": 1,
+            "pack": 0.25, "send": {"byte": 0.5, "message": 3}, "draw": {"byte": 2, "vertex": 1, "frame": 7,
+            "piece_share": 0.25}, "link": {"byte": 1.5, "message": 40}}]})"));
     ASSERT_TRUE(scene) << scene.error().message;
     ASSERT_EQ(scene->hosts.size(), 3u);
     EXPECT_EQ(scene->hosts[0].processors, 2);
     EXPECT_EQ(scene->hosts[0].up, 1000);
     EXPECT_EQ(scene->hosts[0].down, kUnlimited);
     EXPECT_EQ(scene->hosts[2].down, 500);
-    EXPECT_EQ(scene->nodes, (std::vector<std::uint32_t>{1, 2, 2}));
+    EXPECT_EQ(std::vector(scene->nodes.begin(), scene->nodes.end()), (std::vector<std::uint32_t>{1, 2, 2}));
     EXPECT_EQ(scene->latency, 0.5);
     EXPECT_EQ(scene->frames, 20u);
     ASSERT_EQ(scene->programs.size(), 1u);
@@ -62,11 +62,11 @@ TEST_F(SceneFile, PutsCountsAndCostsTogether) {
     EXPECT_EQ(frames[0].pack, 0.25);
     EXPECT_EQ(frames[0].send, 400 * 0.5 + 2 * 3);
     ASSERT_EQ(frames[0].messages.size(), 2u);
-    EXPECT_EQ(frames[0].messages[0].node, 2u);
+    EXPECT_EQ(frames[0].messages[0].node, NodeIndex(2));
     EXPECT_EQ(frames[0].messages[0].bytes, 190);
     EXPECT_EQ(frames[0].messages[0].draw, 200 + 10 + 5);
     EXPECT_EQ(frames[0].messages[0].finish, 7);
-    EXPECT_EQ(frames[0].messages[1].node, 0u);
+    EXPECT_EQ(frames[0].messages[1].node, NodeIndex(0));
     EXPECT_EQ(frames[1].messages.at(0).bytes, 340);
 }
 
