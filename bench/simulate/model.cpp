@@ -384,6 +384,8 @@ private:
     std::uint64_t order_ = 0, count_ = 0;
 };
 
+constexpr double kMostPieces = 1e6;  // of a message
+
 /// At least 0, and not beyond all bounds.
 bool is_amount(double value) { return value >= 0 && value < kUnlimited; }
 
@@ -421,6 +423,8 @@ Result<void> check(const Scene& scene) {
                         return fail(where + "there is no node " + std::to_string(message.node.value));
                     if (!is_amount(message.bytes) || !is_amount(message.draw) || !is_amount(message.finish))
                         return fail(where + "bytes, draw, finish: expected amounts, at least 0");
+                    if (message.bytes > kMostPieces * scene.piece)
+                        return fail(where + "bytes: expected at most a million pieces");
                 }
             }
         }

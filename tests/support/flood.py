@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import collections
 import json
+import resource
 import socket
 import sys
 import time
 
-OPEN = 600  # more than anybody may have
+OPEN = 2000  # more than anybody may have, and those that wait in a queue besides
 PATIENCE = 0.05  # seconds for a connection, whose queue may be full
 
 
@@ -32,6 +33,7 @@ def connect(address: str) -> socket.socket:
 
 
 def flood(address: str, count: int) -> dict[str, float]:
+    resource.setrlimit(resource.RLIMIT_NOFILE, (OPEN + 64, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
     open_now: collections.deque[socket.socket] = collections.deque()
     begin, connected, refused = time.monotonic(), 0, 0
     for _ in range(count):

@@ -169,6 +169,8 @@ TEST(Model, SaysWhatIsOutOfRange) {
               "program 0: pack, send: expected seconds, at least 0");
     EXPECT_EQ(said([](Scene& s) { s.hosts[1].runs_on = 1; }),
               "host 1: runs_on: expected a host with processors of its own");
+    EXPECT_EQ(said([](Scene& s) { s.programs[0].members[0].frames[0].messages[0].bytes = 1e30; }),
+              "program 0: bytes: expected at most a million pieces");
     EXPECT_EQ(said([](Scene& s) { s.programs[0].members.clear(); }), "program 0: expected a member at least");
 }
 
