@@ -9,6 +9,7 @@ from pathlib import Path
 
 WIDTH, HEIGHT = 720, 420  # pixels
 LEFT, RIGHT, TOP, BOTTOM = 70, 150, 40, 55
+NAME_HEIGHT = 14
 COLORS = ["#1b6ca8", "#c8553d", "#2d7d46", "#7a4fa3", "#b8860b", "#444444", "#0b8a8a"]
 
 
@@ -44,7 +45,6 @@ def chart(title: str, x_name: str, y_name: str, lines: list[Line], x_labels: dic
     for y in _marks(low, high):
         up = place(min(xs), y)[1]
         out += [_line(LEFT, up, WIDTH - RIGHT, up), _text(LEFT - 8, up + 4, f"{y:,g}", 'text-anchor="end"')]
-    ends: list[float] = []
     for number, line in enumerate(lines):
         color = COLORS[number % len(COLORS)]
         places = [place(*point) for point in line.points]
@@ -54,9 +54,12 @@ def chart(title: str, x_name: str, y_name: str, lines: list[Line], x_labels: dic
         radius, fill = (4.5, color) if line.measured else (3, "white")
         out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="{fill}" stroke="{color}" stroke-width="1.5"/>'
                 for x, y in places]
-        end = _free(places[-1][1], ends)
-        ends.append(end)
-        out.append(_text(WIDTH - RIGHT + 10, end + 4, line.name, f'fill="{color}"'))
+    least = float(TOP)
+    for end, number in sorted((place(*line.points[-1])[1], number) for number, line in enumerate(lines)):
+        least = max(end, least)
+        color = COLORS[number % len(COLORS)]
+        out.append(_text(WIDTH - RIGHT + 10, least + 4, lines[number].name, f'fill="{color}"'))
+        least += NAME_HEIGHT  # of the next one, which hides no other
     return "\n".join([*out, "</svg>", ""])
 
 
@@ -74,13 +77,6 @@ def _marks(low: float, high: float) -> list[float]:
     steps = (1, 2, 5) if decades <= 3 else (1,)
     return [low * 10.0**decade * step for decade in range(decades + 1) for step in steps
             if low * 10.0**decade * step <= high * 1.001]
-
-
-def _free(wanted: float, taken: list[float]) -> float:
-    """The nearest place below for a name that hides no other one."""
-    while any(abs(wanted - other) < 14 for other in taken):
-        wanted += 2
-    return wanted
 
 
 def _text(x: float, y: float, text: str, more: str = "") -> str:

@@ -60,11 +60,11 @@ def measure(subject: Subject, nodes: int, megabits: int, x: XServer, *, ranks: i
                      status.shown)
 
 
-def elements_of_two(subject: Subject, x: XServer) -> float:
-    """How many elements of its arrays two nodes together process in a frame."""
+def elements(subject: Subject, columns: int, x: XServer) -> float:
+    """How many elements of its arrays so many nodes together process in a frame."""
     frames = 60
     command = [str(frames) if word == subject.command[-1] else word for word in subject.command]
-    with Wall((2, 1), TILE, name="pieces", swap_timeout_ms=NO_LIMIT_MS) as wall:
+    with Wall((columns, 1), TILE, name="pieces", swap_timeout_ms=NO_LIMIT_MS) as wall:
         app = wall.run(*command, rect=(0, 0, *wall.size), env=x.environment(), stdout=subprocess.DEVNULL,
                        stderr=subprocess.DEVNULL)
         app.wait(LIMIT)

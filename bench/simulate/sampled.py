@@ -68,7 +68,7 @@ def watch(wall: Wall, app: subprocess.Popen, first: int, enough: Callable[[Look,
     ends; within `limit` seconds. `shown` gives the last frame that was shown."""
     looks: list[Look] = []
     end = time.monotonic() + limit
-    while app.poll() is None and not (looks and enough(looks[0], looks[-1])):
+    while app.poll() is None and not (len(looks) > 1 and enough(looks[0], looks[-1])):
         if time.monotonic() > end:
             raise WallError(f"{app.args}: too few frames in {limit:.0f} seconds: from {first} on, "
                             f"{looks[-1].frame if looks else 'none'} was reached")

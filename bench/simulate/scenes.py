@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import tempfile
 from pathlib import Path
@@ -25,7 +24,7 @@ def program(count: Count, costs: Costs, hosts: list[int], nodes: list[int]) -> d
             "send": {"byte": costs.agent_byte,
                      "message": count.sending * len(hosts) / count.messages + costs.agent_message},
             "draw": {"vertex": draw.vertex, "frame": draw.frame + costs.walld_message,
-                     "piece_share": draw.share(count.nodes)},
+                     "piece_share": draw.share(*count.tiles)},
             "link": {"byte": LINK_FACTOR, "message": LINK_MESSAGE}}
 
 
@@ -33,11 +32,16 @@ def link(megabits: float) -> dict:
     return {"up": megabits * 1e6 / BITS, "down": megabits * 1e6 / BITS} if megabits else {}
 
 
+def frames(count: Count) -> int:
+    """All that were counted, and many of a few."""
+    return max(64, count.last - count.skip)
+
+
 def on_one_machine(count: Count, costs: Costs, megabits: float) -> dict:
     """As measured.py does: each host has a link of its own, all share this machine's processors."""
-    own = {"processors": os.cpu_count()}
+    own = {"processors": costs.processors[count.subject]}
     hosts = [own | link(megabits), {"count": count.nodes, "runs_on": 0} | link(megabits)]
-    return {"hosts": hosts, "nodes": list(range(1, count.nodes + 1)), "latency": LATENCY,
+    return {"hosts": hosts, "nodes": list(range(1, count.nodes + 1)), "latency": LATENCY, "frames": frames(count),
             "programs": [program(count, costs, [0] * count.ranks, list(range(count.nodes)))]}
 
 
@@ -45,13 +49,13 @@ def on_machines(count: Count, costs: Costs, megabits: float) -> dict:
     """A machine for each process and each node."""
     hosts = [{"count": count.ranks + count.nodes, "processors": PROCESSORS} | link(megabits)]
     nodes = list(range(count.ranks, count.ranks + count.nodes))
-    return {"hosts": hosts, "nodes": nodes, "latency": LATENCY,
+    return {"hosts": hosts, "nodes": nodes, "latency": LATENCY, "frames": frames(count),
             "programs": [program(count, costs, list(range(count.ranks)), list(range(count.nodes)))]}
 
 
-def simulate(scene: dict, frames: int = 64) -> dict:
+def simulate(scene: dict) -> dict:
     with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
-        json.dump(scene | {"frames": frames}, file)
+        json.dump(scene, file)
         file.flush()
         done = subprocess.run([build_folder() / "bench" / "simulate_wall", file.name], capture_output=True, text=True)
     if done.returncode != 0:
