@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Walls that nobody here has: what real programs send to each of a thousand nodes (counted, with the real router, by
-nodes that draw nothing), what that costs this machine's processors (measured on walls of one and two nodes), and how
+nodes that draw nothing), what that costs this machine's processors (measured on walls of one to four nodes), and how
 fast a wall would be that has so many machines and links of such a rate (docs/simulation.md).
 
 simulate.py [--check-only] [--json FILE] [--pictures FOLDER]
@@ -25,7 +25,7 @@ sys.path[:0] = [str(HERE / "simulate"), str(HERE.parent / "tests" / "support")]
 import scenes  # noqa: E402
 from chart import Line, chart, save  # noqa: E402
 from costs import Costs, costs, trials  # noqa: E402
-from counted import Count, count  # noqa: E402
+from counted import count  # noqa: E402
 from measured import measure  # noqa: E402
 from programs import Subject, large_march, subjects  # noqa: E402
 from xserver import XServer  # noqa: E402

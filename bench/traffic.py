@@ -64,9 +64,8 @@ def replay(recording: Recording, wall: Wall, x: XServer, **environment: str) -> 
     """The library's statistics of one run."""
     with tempfile.TemporaryDirectory() as folder:
         stats = Path(folder) / "stats.json"
-        command = [word for word in recording.argv() if word not in ("-s", "-")]
-        subprocess.run(wall.wallrun(*command, fullscreen=True), check=True, timeout=600, stdout=subprocess.DEVNULL,
-                       stderr=subprocess.DEVNULL,
+        subprocess.run(wall.wallrun(*recording.silent_argv(), fullscreen=True), check=True, timeout=600,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                        env=x.environment(WALLGL_STATS=str(stats), **recording.environment(), **environment))
         return json.loads(stats.read_text())
 

@@ -17,7 +17,6 @@ COLORS = ["#1b6ca8", "#c8553d", "#2d7d46", "#7a4fa3", "#b8860b", "#444444", "#0b
 class Line:
     name: str
     points: list[tuple[float, float]]  # x and y, both above 0
-    measured: bool = False  # filled marks and no line: what was seen, not foretold
 
 
 def chart(title: str, x_name: str, y_name: str, lines: list[Line], x_labels: dict[float, str]) -> str:
@@ -48,11 +47,9 @@ def chart(title: str, x_name: str, y_name: str, lines: list[Line], x_labels: dic
     for number, line in enumerate(lines):
         color = COLORS[number % len(COLORS)]
         places = [place(*point) for point in line.points]
-        if not line.measured:
-            path = " ".join(f"{x:.1f},{y:.1f}" for x, y in places)
-            out.append(f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2"/>')
-        radius, fill = (4.5, color) if line.measured else (3, "white")
-        out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="{fill}" stroke="{color}" stroke-width="1.5"/>'
+        path = " ".join(f"{x:.1f},{y:.1f}" for x, y in places)
+        out.append(f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2"/>')
+        out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="white" stroke="{color}" stroke-width="1.5"/>'
                 for x, y in places]
     least = float(TOP)
     for end, number in sorted((place(*line.points[-1])[1], number) for number, line in enumerate(lines)):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What things cost on this machine, from walls of one and of two nodes: all else is foretold from it."""
+"""What things cost on this machine, from walls of one and of two nodes (and of four, where nodes
+leave out parts of draws): all else is foretold from it."""
 from __future__ import annotations
 
 import dataclasses

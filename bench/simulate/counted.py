@@ -71,7 +71,8 @@ def count(subject: Subject, tiles: tuple[int, int], folder: Path, x: XServer, *,
     with CountingWall(tiles, TILE, name="count", swap_timeout_ms=NO_LIMIT_MS) as wall:
         app = wall.run(*subject.command, rect=(0, 0, *wall.size), parallel=ranks if ranks > 1 else 0,
                        env=x.environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        rates = watch(wall, app, subject.first, lambda _, now: now.frame > last, LIMIT)
+        rates = watch(wall, app, subject.first, lambda _, now: now.frame > last, LIMIT,
+                      lambda: wall.rest("GET", "/api/v1/sessions")[1])
         end_all(wall.apps)
         wall.take_trace(trace)
     rows = [row for row in read(trace) if subject.first < row["frame"] <= last]

@@ -3,7 +3,6 @@
 TLS, links of a given rate), all on the processors of this machine."""
 from __future__ import annotations
 
-import dataclasses
 import http.client
 import json
 import subprocess
@@ -37,27 +36,26 @@ class StatusLink:
         self.connection = http.client.HTTPConnection(self.address.hostname, self.address.port)
         self.connection.sock = wall.hosts.connect(WALLD, (self.address.hostname, self.address.port))
 
-    def shown(self) -> int:
+    def sessions(self) -> list[dict]:
         self.connection.request("GET", "/api/v1/sessions")
-        sessions = json.loads(self.connection.getresponse().read())
-        return max((surface["frame"] for session in sessions for surface in session["surfaces"]), default=0)
+        return json.loads(self.connection.getresponse().read())
 
 
-def measure(subject: Subject, nodes: int, megabits: int, x: XServer, *, ranks: int = 1) -> Rates:
+def measure(subject: Subject, nodes: int, megabits: int, x: XServer) -> Rates:
     """`megabits`: a second, to and from each host; 0: no limit."""
     with MachineWall((nodes, 1), TILE, clients=[DESK], name="measure", swap_timeout_ms=NO_LIMIT_MS,
                      environment=ONE_THREAD) as wall:
         for host in (DESK, *wall.node_names) if megabits else ():
             wall.hosts.limit(host, f"{megabits}mbit")
         status = StatusLink(wall)
-        app = wall.run_at(DESK, *subject.command, rect=(0, 0, *wall.size), parallel=ranks if ranks > 1 else 0,
-                          env=x.environment(**UNCODED), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        app = wall.run_at(DESK, *subject.command, rect=(0, 0, *wall.size), env=x.environment(**UNCODED),
+                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         if subject.recorded:
             return watch(wall, app, subject.first, lambda _, now: now.frame >= subject.first + subject.frames, LIMIT,
-                         status.shown)
+                         status.sessions)
         return watch(wall, app, subject.first,
                      lambda then, now: now.time - then.time >= SPAN and now.frame - then.frame >= LEAST_FRAMES, LIMIT,
-                     status.shown)
+                     status.sessions)
 
 
 def elements(subject: Subject, columns: int, x: XServer) -> float:

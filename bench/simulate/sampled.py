@@ -15,7 +15,6 @@ from wall import Wall, WallError  # noqa: E402
 INTERVAL = 0.02  # seconds between two looks at least,
 REST = 5  # and so many times as long as one takes
 NANO = 1e-9
-PROGRAM = "program"
 
 # Seconds that each thread has run, by its number; the process's first one is the first.
 Threads = dict[int, float]
@@ -56,16 +55,15 @@ class Rates:
     sending: float  # of its other ones
 
 
-def shown_here(wall: Wall) -> int:
-    """The last frame that the wall has shown of its only program."""
-    sessions = wall.rest("GET", "/api/v1/sessions")[1]
+def last_shown(sessions: list[dict]) -> int:
+    """The last frame that a wall has shown of its only program, by walld's list."""
     return max((surface["frame"] for session in sessions for surface in session["surfaces"]), default=0)
 
 
 def watch(wall: Wall, app: subprocess.Popen, first: int, enough: Callable[[Look, Look], bool], limit: float,
-          shown: Callable[[], int] | None = None) -> Rates:
+          sessions: Callable[[], list[dict]]) -> Rates:
     """From frame `first` of the only program on the wall on, until what was seen then and now is enough, or the program
-    ends; within `limit` seconds. `shown` gives the last frame that was shown."""
+    ends; within `limit` seconds. `sessions` gives walld's list of them."""
     looks: list[Look] = []
     end = time.monotonic() + limit
     while app.poll() is None and not (len(looks) > 1 and enough(looks[0], looks[-1])):
@@ -74,7 +72,7 @@ def watch(wall: Wall, app: subprocess.Popen, first: int, enough: Callable[[Look,
                             f"{looks[-1].frame if looks else 'none'} was reached")
         begin = time.monotonic()
         try:
-            frame = shown() if shown else shown_here(wall)
+            frame = last_shown(sessions())
             now = Look(time.monotonic(), frame, {name: threads_of(d.pid) for name, d in wall.daemons.items()},
                        [threads_of(member) for member in members_of(app.pid)])
         except OSError:

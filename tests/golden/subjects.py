@@ -74,6 +74,10 @@ class Recording:
         what = ["--loop=-1"] if self.loops else ["-s", "-"]
         return ["eglretrace" if self.api == "egl" else "glretrace", "-b", *what, str(self.path)]
 
+    def silent_argv(self) -> list[str]:
+        """Replays it once, and writes nothing."""
+        return [word for word in self.argv() if word not in ("-s", "-")]
+
     def looping(self) -> Recording:
         """Never ends: goes on with its last frame. It gives no frames."""
         return dataclasses.replace(self, loops=True)

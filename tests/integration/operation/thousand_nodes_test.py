@@ -25,11 +25,10 @@ class ThousandNodes(unittest.TestCase):
     def counted(self, tiles: tuple[int, int]) -> tuple[list[dict[str, int]], dict]:
         """What the nodes have counted of a recording of atlantis, and what the library says."""
         recording = next(r for r in load_recordings() if r.name == "atlantis")
-        command = [word for word in recording.argv() if word not in ("-s", "-")]
         with XServer() as x, tempfile.TemporaryDirectory() as name, CountingWall(
                 tiles, (64, 48), name="nodes", swap_timeout_ms=NO_LIMIT_MS) as wall:
             stats, trace = Path(name) / "stats.json", Path(name) / "trace.tsv"
-            subprocess.run(wall.wallrun(*command, fullscreen=True), check=True, timeout=LIMIT,
+            subprocess.run(wall.wallrun(*recording.silent_argv(), fullscreen=True), check=True, timeout=LIMIT,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                            env=x.environment(WALLGL_STATS=str(stats), **recording.environment()))
             wall.take_trace(trace)
