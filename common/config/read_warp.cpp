@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "common/config/read_warp.h"
 
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -22,11 +23,15 @@ void read_mesh(TreeReader& read, const toml::table& mesh, geom::Warp& out) {
     const std::size_t wanted = std::size_t{out.columns} * out.rows;
     if (wanted == 0 || !array || array->size() != wanted) {
         read.refuse(points ? points->source() : mesh.source(),
-                    "[mesh]: expected 'columns', 'rows' and 'points', columns times rows of [x, y], row by row");
+                    "[mesh]: expected 'columns', 'rows' and 'points', columns times rows of [x, y] or [], row by row");
         return;
     }
     for (const toml::node& point : *array) {
-        const auto xy = read.numbers(point, "'points'", "[x, y]", 2, 2, -kFarthest, kFarthest);
+        if (const auto* nothing = point.as_array(); nothing && nothing->empty()) {
+            out.points.push_back({NAN, NAN});
+            continue;
+        }
+        const auto xy = read.numbers(point, "'points'", "[x, y], or [] for black", 2, 2, -kFarthest, kFarthest);
         out.points.push_back({xy[0], xy[1]});
     }
 }

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "common/base/quoted.h"
 #include "tools/wallcalibrate/flat_screen.h"
@@ -90,19 +92,61 @@ cv::Matx33d canvas_of(std::span<const Projector> projectors, const std::vector<C
     return cv::Matx33d(count / across, 0, 0, 0, count / down, 0, 0, 0, 1) * to_unit;
 }
 
-/// An interval of the canvas.
+/// An interval of the canvas that a projector lights from end to end.
 struct Span {
-    double from = -1e9, to = 1e9;
-    void narrow(double a, double b) {
-        from = std::max(from, a);
-        to = std::min(to, b);
-    }
+    std::optional<double> from, to;          ///< its own ends; none: the screen ends before
+    double seen_from = 1e9, seen_to = -1e9;  ///< of what is seen of it
 };
+
+/// A projector's pixels from edge to edge on the canvas: a grid, with NaN for what no screen is behind.
+struct OnCanvas {
+    std::size_t columns = 2, rows = 2;
+    std::vector<cv::Point2d> points;
+};
+
+OnCanvas on_canvas(const Projector& projector, const cv::Matx33d& canvas) {
+    OnCanvas out;
+    if (projector.seen.points.empty()) {
+        const auto c = corners_of(projector, canvas * projector.on_screen);
+        out.points = {c[0], c[1], c[3], c[2]};
+        return out;
+    }
+    out.columns = static_cast<std::size_t>(projector.seen.columns);
+    out.rows = static_cast<std::size_t>(projector.seen.rows);
+    for (const auto& point : projector.seen.points) out.points.push_back(is_seen(point) ? apply(canvas, point) : point);
+    return out;
+}
+
+/// Across (x), or down.
+Span span_of(const OnCanvas& grid, bool across) {
+    Span out;
+    for (std::size_t i = 0; i < grid.points.size(); ++i) {
+        if (!is_seen(grid.points[i])) continue;
+        const double at = across ? grid.points[i].x : grid.points[i].y;
+        const std::size_t place = across ? i % grid.columns : i / grid.columns,
+                          last = (across ? grid.columns : grid.rows) - 1;
+        out.seen_from = std::min(out.seen_from, at);
+        out.seen_to = std::max(out.seen_to, at);
+        if (place == 0) out.from = std::max(out.from.value_or(at), at);
+        if (place == last) out.to = std::min(out.to.value_or(at), at);
+    }
+    return out;
+}
 
 /// What all projectors of each column, or row, light from end to end.
 std::map<std::size_t, Span> lit(const std::vector<std::size_t>& group, const std::vector<Span>& each) {
     std::map<std::size_t, Span> out;
-    for (std::size_t i = 0; i < group.size(); ++i) out[group[i]].narrow(each[i].from, each[i].to);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+        Span& span = out[group[i]];
+        if (each[i].from) span.from = std::max(span.from.value_or(*each[i].from), *each[i].from);
+        if (each[i].to) span.to = std::min(span.to.value_or(*each[i].to), *each[i].to);
+        span.seen_from = std::min(span.seen_from, each[i].seen_from);
+        span.seen_to = std::max(span.seen_to, each[i].seen_to);
+    }
+    for (auto& [index, span] : out) {
+        if (!span.from) span.from = span.seen_from;
+        if (!span.to) span.to = span.seen_to;
+    }
     return out;
 }
 
@@ -111,8 +155,8 @@ Result<std::map<std::size_t, std::pair<int, int>>> whole(const std::map<std::siz
                                                          const char* what) {
     std::map<std::size_t, std::pair<int, int>> out;
     for (const auto& [group, span] : spans) {
-        const int from = static_cast<int>(std::ceil(span.from - origin)),
-                  to = static_cast<int>(std::floor(span.to - origin));
+        const int from = static_cast<int>(std::ceil(*span.from - origin)),
+                  to = static_cast<int>(std::floor(*span.to - origin));
         if (to <= from || (group > 0 && from >= out[group - 1].second))
             return fail(
                 fmt::format("{} {} and the one before it do not overlap on the screen: expected projectors whose "
@@ -123,24 +167,59 @@ Result<std::map<std::size_t, std::pair<int, int>>> whole(const std::map<std::siz
     return out;
 }
 
+/// `fractions`: from the screen's picture to fractions of the tile.
+geom::Warp flat_warp(const Projector& projector, const cv::Matx33d& fractions) {
+    const cv::Matx33d pixels(projector.width, 0, 0, 0, projector.height, 0, 0, 0, 1);
+    cv::Matx33d all = fractions * projector.on_screen * pixels;
+    all *= 1 / all(2, 2);
+    geom::Warp out;
+    for (int k = 0; k < 9; ++k) out.homography[static_cast<std::size_t>(k)] = static_cast<float>(all.val[k]);
+    return out;
+}
+
+geom::Warp mesh_of(const OnCanvas& grid, const cv::Matx33d& fractions) {
+    geom::Warp out;
+    out.columns = static_cast<std::uint32_t>(grid.columns);
+    out.rows = static_cast<std::uint32_t>(grid.rows);
+    for (const auto& point : grid.points) {
+        const auto at = is_seen(point) ? apply(fractions, point) : point;
+        out.points.push_back({static_cast<float>(at.x), static_cast<float>(at.y)});
+    }
+    return out;
+}
+
 }  // namespace
+
+void put(Projector& projector, SeenMesh seen) {
+    std::vector<cv::Point2d> pixels, points;
+    for (std::size_t i = 0; i < seen.points.size(); ++i) {
+        if (!is_seen(seen.points[i])) continue;
+        const auto columns = static_cast<std::size_t>(seen.columns);
+        pixels.emplace_back(static_cast<double>(i % columns) * projector.width / (seen.columns - 1),
+                            static_cast<double>(i / columns) * projector.height / (seen.rows - 1));
+        points.push_back(seen.points[i]);
+    }
+    projector.on_screen = cv::Matx33d(cv::findHomography(pixels, points, 0));
+    projector.seen = std::move(seen);
+}
 
 Result<std::vector<PlannedTile>> plan_wall(std::span<const Projector> projectors) {
     if (projectors.empty()) return fail("no projectors");
     const auto cells = grid_of(projectors);
     if (!cells) return tl::unexpected(cells.error());
     const cv::Matx33d canvas = canvas_of(projectors, *cells);
+    std::vector<OnCanvas> grids;
     std::vector<Span> across, down;
     std::vector<std::size_t> columns, rows;
     for (std::size_t i = 0; i < projectors.size(); ++i) {
-        const auto c = corners_of(projectors[i], canvas * projectors[i].on_screen);
-        across.push_back({std::max(c[0].x, c[3].x), std::min(c[1].x, c[2].x)});
-        down.push_back({std::max(c[0].y, c[1].y), std::min(c[3].y, c[2].y)});
+        grids.push_back(on_canvas(projectors[i], canvas));
+        across.push_back(span_of(grids.back(), true));
+        down.push_back(span_of(grids.back(), false));
         columns.push_back((*cells)[i].column);
         rows.push_back((*cells)[i].row);
     }
     const auto lit_columns = lit(columns, across), lit_rows = lit(rows, down);
-    const double left = std::ceil(lit_columns.at(0).from), top = std::ceil(lit_rows.at(0).from);
+    const double left = std::ceil(*lit_columns.at(0).from), top = std::ceil(*lit_rows.at(0).from);
     const auto x = whole(lit_columns, left, "column"), y = whole(lit_rows, top, "row");
     if (!x) return tl::unexpected(x.error());
     if (!y) return tl::unexpected(y.error());
@@ -155,13 +234,11 @@ Result<std::vector<PlannedTile>> plan_wall(std::span<const Projector> projectors
         if (x->contains(column + 1)) tile.ramps[geom::Blend::right] = x1 - x->at(column + 1).first;
         if (row > 0) tile.ramps[geom::Blend::top] = y->at(row - 1).second - y0;
         if (y->contains(row + 1)) tile.ramps[geom::Blend::bottom] = y1 - y->at(row + 1).first;
-        // Fractions of the output to its pixels, the screen, the canvas, fractions of the tile.
-        const cv::Matx33d pixels(tile.width, 0, 0, 0, tile.height, 0, 0, 0, 1);
+        // The canvas to fractions of the tile.
         const cv::Matx33d fractions(1.0 / tile.rect.width, 0, -(left + x0) / tile.rect.width, 0, 1.0 / tile.rect.height,
                                     -(top + y0) / tile.rect.height, 0, 0, 1);
-        cv::Matx33d all = fractions * canvas * projectors[i].on_screen * pixels;
-        all *= 1 / all(2, 2);
-        for (int k = 0; k < 9; ++k) tile.warp.homography[static_cast<std::size_t>(k)] = static_cast<float>(all.val[k]);
+        tile.warp = projectors[i].seen.points.empty() ? flat_warp(projectors[i], fractions * canvas)
+                                                      : mesh_of(grids[i], fractions);
         if (const char* wrong = geom::wrong_with(tile.warp))
             return fail("the warp of tile '" + tile.tile + "' " + wrong);
         out.push_back(std::move(tile));
@@ -180,8 +257,15 @@ std::string tile_lines(const PlannedTile& tile, const std::string& warp_file, do
 }
 
 std::string warp_text(const geom::Warp& warp) {
-    return fmt::format("# From places of the output to places of the tile (docs/walls.md).\nhomography = [{}]\n",
-                       fmt::join(warp.homography, ", "));
+    constexpr std::string_view kSays = "# From places of the output to places of the tile (docs/walls.md).\n";
+    if (warp.columns == 0) return fmt::format("{}homography = [{}]\n", kSays, fmt::join(warp.homography, ", "));
+    std::string out = fmt::format("{}[mesh]\ncolumns = {}\nrows = {}\npoints = [\n", kSays, warp.columns, warp.rows);
+    for (std::size_t i = 0; i < warp.points.size(); ++i) {
+        const auto& point = warp.points[i];
+        out += std::isnan(point.x) ? "[]" : fmt::format("[{:.6f}, {:.6f}]", point.x, point.y);
+        out += (i + 1) % warp.columns == 0 ? ",\n" : ", ";
+    }
+    return out + "]\n";
 }
 
 }  // namespace wall::calibrate

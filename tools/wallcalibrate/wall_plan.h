@@ -10,6 +10,7 @@
 
 #include "common/base/result.h"
 #include "common/geom/tile_output.h"
+#include "tools/wallcalibrate/curved_screen.h"
 
 namespace wall::calibrate {
 
@@ -19,17 +20,21 @@ struct Projector {
     geom::Rect rect;            ///< on the canvas
     int width = 0, height = 0;  ///< pixels of its output
     cv::Matx33d on_screen;      ///< from its pixels to any flat picture of the screen
+    SeenMesh seen;              ///< the same, in that picture, of a screen that is not flat; no points: it is
 };
+/// Of a curved screen: where it lies, and about where its corners would be if the screen were flat.
+void put(Projector& projector, SeenMesh seen);
 
 struct PlannedTile {
     std::string tile;
     geom::Rect rect;
     int width = 0, height = 0;   ///< of the output
-    geom::Warp warp;             ///< a homography
+    geom::Warp warp;             ///< a homography; on a curved screen, a mesh
     std::array<int, 4> ramps{};  ///< by geom::Blend::Edge, pixels
 };
 
 /// Rows and columns of tiles whose rects are lit by all projectors that share them; the canvas has their mean density.
+/// Where a projector shines past a curved screen's rim the rect goes as far as the screen does.
 /// An error: they are no grid, or do not overlap.
 Result<std::vector<PlannedTile>> plan_wall(std::span<const Projector> projectors);
 

@@ -77,6 +77,20 @@ class Calibrate(unittest.TestCase):
         self.assertEqual({tile["pattern"] for tile in self.wall.ctl("tiles")}, {None}, "the programs are shown again")
         self.assertEqual(len(list(shots.glob("*.png"))), 2 * (2 + 2 * 7 + 2 * 7))
 
+        found = self.show_evenly()
+        with self.subTest("the same photographs again"):
+            again = self.calibrate("--pictures", shots, "--out", self.wall.folder / "again", "--tile", "a",
+                                   "--tile", "b")
+            self.assertEqual(again.returncode, 0, again.stderr)
+            self.assertEqual((self.wall.folder / "again" / "tiles.toml").read_text(), found)
+        with self.subTest("as a curved screen, which this one only happens not to be"):
+            curved = self.calibrate("--pictures", shots, "--out", self.wall.folder, "--screen", "curved")
+            self.assertEqual(curved.returncode, 0, curved.stderr)
+            self.assertIn("[mesh]", (self.wall.folder / "a.warp").read_text())
+            self.show_evenly()
+
+    def show_evenly(self) -> str:
+        """Takes what the calibration has written, and looks whether all is as bright; its text."""
         found = (self.wall.folder / "tiles.toml").read_text()
         self.assertIn('# [[node.tile]] name = "a"', found)
         tiles = dict(zip("ab", found.split("# [[node.tile]]")[1:]))
@@ -90,12 +104,7 @@ class Calibrate(unittest.TestCase):
         self.assertGreater(whole.sum(), 40_000, "most of what they light")
         self.assertLess(np.abs(light[whole] - 1).max(), 6 * EVEN, "nowhere dark, nowhere bright")
         self.assertLess(np.percentile(np.abs(light[whole] - 1), 95), EVEN)
-
-        with self.subTest("the same photographs again"):
-            again = self.calibrate("--pictures", shots, "--out", self.wall.folder / "again", "--tile", "a",
-                                   "--tile", "b")
-            self.assertEqual(again.returncode, 0, again.stderr)
-            self.assertEqual((self.wall.folder / "again" / "tiles.toml").read_text(), found)
+        return found
 
     def lit_by_both(self, rects: dict[str, tuple[int, int, int, int]]) -> np.ndarray:
         """The camera's pixels that see the wall, but for its rim."""
@@ -117,6 +126,16 @@ class Calibrate(unittest.TestCase):
         self.assertEqual({tile["pattern"] for tile in self.wall.ctl("tiles")}, {None})
         self.assertIn("there is no tile 'x'", self.calibrate("--pictures", ".", "--tile", "x").stderr)
         self.assertIn("--capture", self.calibrate("--help").stdout)
+        self.assertIn("--pictures is missing", self.calibrate().stderr)
+        self.assertIn("--lens goes with --screen curved", self.calibrate("--pictures", ".", "--lens", "x").stderr)
+        boards = self.wall.folder / "boards"
+        boards.mkdir()
+        for number in range(2):
+            cv2.imwrite(str(boards / f"{number}.png"), np.full((200, 300), 99, np.uint8))
+        lens = ["lens", "--pictures", boards, "--out", self.wall.folder / "lens.yml", "--board"]
+        self.assertIn("expected the inner corners of a chessboard", self.calibrate(*lens, "9").stderr)
+        self.assertIn("0 of 2 photographs show a whole board of 9x6", self.calibrate(*lens, "9x6").stderr)
+        self.assertFalse((self.wall.folder / "lens.yml").exists())
 
 
 if __name__ == "__main__":

@@ -141,6 +141,10 @@ TEST(WarpFile, IsAHomographyOrAMesh) {
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_EQ(mesh->columns, 2u);
     EXPECT_EQ(mesh->points[3], (geom::Point{1.1f, 1}));
+    const auto holed = parse_warp("[mesh]\ncolumns = 2\nrows = 2\npoints = [[0, 0], [1, 0.0], [], [1, 1]]", "a.toml");
+    ASSERT_TRUE(holed) << holed.error().message;
+    EXPECT_TRUE(std::isnan(holed->points[2].x) && std::isnan(holed->points[2].y));
+    EXPECT_EQ(holed->points[3], (geom::Point{1, 1}));
 }
 
 TEST(WarpFile, SaysWhatIsWrongAndWhatWasExpected) {
@@ -153,6 +157,8 @@ TEST(WarpFile, SaysWhatIsWrongAndWhatWasExpected) {
         {"[mesh]\ncolumns = 2\nrows = 2\npoints = [[0, 0], [1, 0], [0, 1], [inf, 1]]",
          "a.toml:4: 'points': expected a"},
         {"[mesh]\ncolumns = 2\nrows = 2\npoints = [[1, 0], [0, 0], [0, 1], [1, 1]]", "a.toml:1: this warp is folded"},
+        {"[mesh]\ncolumns = 2\nrows = 2\npoints = [[0, 0], [1, 0], [0, 1], [1]]",
+         "a.toml:4: 'points': expected [x, y], or [] for black"},
         {"mesh = 3", "a.toml:1: 'mesh': expected a [mesh] table"},
         {"what = 1", "a.toml:1: unknown key 'what'"},
     };

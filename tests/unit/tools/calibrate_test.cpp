@@ -5,20 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
-#include <random>
 
 #include "common/config/read_warp.h"
-#include "tileserver/render/test_pattern.h"
+#include "tests/unit/tools/room_camera.h"
 #include "tools/wallcalibrate/flat_screen.h"
-#include "tools/wallcalibrate/gray_code.h"
-#include "tools/wallcalibrate/wall_plan.h"
 
 namespace wall::calibrate {
 namespace {
 
 using ::testing::HasSubstr;
-using tileserver::TestPattern;
 
 constexpr int kWidth = 800, kHeight = 600;  // of a projector
 const cv::Size kPicture(1600, 1200);
@@ -61,45 +56,22 @@ struct Room {
         return at;
     }
     /// For each pixel of the camera, the projector's pixel that lights what it sees.
-    std::pair<cv::Mat, cv::Mat> light_of(std::size_t projector) const {
+    LightMaps light_of(std::size_t projector) const {
         const Lens lens{kPicture, k1, k2};
         const cv::Matx33d to_output = (camera * to_screen[projector]).inv();
-        cv::Mat x(kPicture, CV_32F), y(kPicture, CV_32F);
+        LightMaps out{cv::Mat(kPicture, CV_32F), cv::Mat(kPicture, CV_32F)};
         for (int row = 0; row < kPicture.height; ++row) {
             for (int column = 0; column < kPicture.width; ++column) {
                 const auto at = apply(to_output, lens.straight({column + 0.5, row + 0.5}));
-                x.at<float>(row, column) = static_cast<float>(at.x - 0.5);
-                y.at<float>(row, column) = static_cast<float>(at.y - 0.5);
+                out.x.at<float>(row, column) = static_cast<float>(at.x - 0.5);
+                out.y.at<float>(row, column) = static_cast<float>(at.y - 0.5);
             }
         }
-        return {x, y};
+        return out;
     }
     /// What is photographed while a projector shows something, and the others are black.
     Photograph camera_at(std::size_t projector) const {
-        return [this, maps = light_of(projector),
-                random = cv::RNG(seed + 77 * projector)](const Shot& shot) mutable -> Result<cv::Mat> {
-            TestPattern pattern{.kind = shot.kind == Shot::Kind::white   ? TestPattern::Kind::white
-                                        : shot.kind == Shot::Kind::black ? TestPattern::Kind::black
-                                                                         : TestPattern::Kind::code,
-                                .bit = static_cast<std::uint32_t>(shot.bit),
-                                .rows = shot.rows,
-                                .inverted = shot.inverted};
-            const auto pixels = tileserver::pattern_pixels(pattern, {0, 0, kWidth, kHeight});
-            cv::Mat shown(kHeight, kWidth, CV_8UC1), light, out;
-            for (int i = 0; i < kWidth * kHeight; ++i) shown.data[i] = std::to_integer<uchar>(pixels[4 * i]);
-            shown.convertTo(shown, CV_32F);
-            cv::remap(shown, light, maps.first, maps.second, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-            cv::GaussianBlur(light, light, {5, 5}, 0.8);
-            cv::Mat noisy(light.size(), CV_32F);
-            random.fill(noisy, cv::RNG::NORMAL, 0, noise);
-            for (int y = 0; y < light.rows; ++y)  // brighter on the left, and a room that is not dark
-                for (int x = 0; x < light.cols; ++x)
-                    light.at<float>(y, x) = 18 + light.at<float>(y, x) * (0.75f - 0.35f * static_cast<float>(x) /
-                                                                                      static_cast<float>(light.cols));
-            light += noisy;
-            light.convertTo(out, CV_8U);
-            return out;
-        };
+        return photograph(light_of(projector), kWidth, kHeight, noise, seed + 77 * projector);
     }
 };
 
@@ -143,25 +115,6 @@ cv::Point2d output_at(const PlannedTile& tile, const cv::Point2d& canvas) {
     const auto at =
         apply(warp.inv(), {(canvas.x - tile.rect.x) / tile.rect.width, (canvas.y - tile.rect.y) / tile.rect.height});
     return {at.x * tile.width, at.y * tile.height};
-}
-
-/// The share of light that a tile gives a place of the canvas, as the nodes blend it (docs/walls.md).
-double weight_at(const PlannedTile& tile, const cv::Point2d& canvas) {
-    const auto& r = tile.rect;
-    if (canvas.x < r.x || canvas.y < r.y || canvas.x > r.right() || canvas.y > r.bottom()) return 0;
-    const std::array<double, 4> inside{canvas.x - r.x, r.right() - canvas.x, canvas.y - r.y, r.bottom() - canvas.y};
-    double weight = 1;
-    for (std::size_t edge = 0; edge < 4; ++edge) {
-        if (tile.ramps[edge] == 0) continue;
-        const double t = std::clamp(inside[edge] / tile.ramps[edge], 0.0, 1.0);
-        weight *= t * t * (3 - 2 * t);
-    }
-    return weight;
-}
-
-double percentile(std::vector<double> values, std::size_t percent) {
-    std::ranges::sort(values);
-    return values[values.size() * percent / 100];
 }
 
 TEST(Calibration, FindsARoomThatNobodyHasSeen) {
@@ -214,12 +167,7 @@ TEST(Calibration, FindsARoomThatNobodyHasSeen) {
             for (std::size_t i = 0; i < found->tiles.size(); ++i) {
                 const auto& tile = found->tiles[i];
                 const auto pixel = apply(room.to_screen[i].inv(), place);
-                const geom::TileOutput output{
-                    .width = tile.width, .height = tile.height, .warp = std::make_shared<const geom::Warp>(tile.warp)};
-                const auto at = geom::place_in_tile(
-                    output, {static_cast<float>(pixel.x / tile.width), static_cast<float>(pixel.y / tile.height)});
-                light += weight_at(tile, {tile.rect.x + static_cast<double>(at.x) * tile.rect.width,
-                                          tile.rect.y + static_cast<double>(at.y) * tile.rect.height});
+                light += weight_at(tile, canvas_at(tile, pixel));
             }
             brightness.push_back(std::abs(light - 1));
         }
