@@ -67,6 +67,8 @@ Result<CameraLens> read_lens(const std::filesystem::path& path) {
     const auto refused = [&name](const char* what) {
         return fail(name + ": " + what + ": expected what `wallctl calibrate lens` or OpenCV's calibration wrote");
     };
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return refused("cannot be read");  // OpenCV would print it, too
     try {
         const cv::FileStorage file(name, cv::FileStorage::READ | cv::FileStorage::FORMAT_YAML);
         if (!file.isOpened()) return refused("cannot be read");
@@ -88,8 +90,8 @@ Result<CameraLens> read_lens(const std::filesystem::path& path) {
             return refused("has no distortion_coefficients of 4, 5, 8, 12 or 14 numbers");
         if (count > 0) out.distortion.assign(distortion.begin<double>(), distortion.end<double>());
         return out;
-    } catch (const cv::Exception& error) {
-        return refused(error.err.c_str());
+    } catch (const cv::Exception& wrong) {
+        return refused(wrong.err.c_str());
     }
 }
 

@@ -20,13 +20,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int kWidth = 640, kHeight = 480;  // of a projector
-const cv::Size kPicture(1600, 1000);
+constexpr int kWidth = 400, kHeight = 300;  // of a projector
+const cv::Size kPicture(1000, 640);
 constexpr double kGoodEnough = 0.5;  // pixels of the canvas, 95 %
 constexpr double kNowhere = -1000;   // of LightMaps
 
 const CameraLens kLens{
-    kPicture, {1000, 0, 812, 0, 1000, 489, 0, 0, 1}, {-0.12, 0.03, 0.001, -0.0015, 0}, 0};  // a wide one
+    kPicture, {620, 0, 508, 0, 620, 309, 0, 0, 1}, {-0.12, 0.03, 0.001, -0.0015, 0}, 0};  // a wide one
 
 /// From an eye, or a lamp: x to the right, y down, z ahead.
 struct Stand {
@@ -60,7 +60,7 @@ Screen round(cv::Vec3d middle, double radius, cv::Vec3d weights, double top, dou
 }
 const Screen kCylinder = round({0, 0, 0}, 3, {1, 0, 1}, -100, 100);
 /// Projectors shine past its rims.
-const Screen kBand = round({0, 0, 0}, 3, {1, 0, 1}, -0.75, 0.8);
+const Screen kBand = round({0, 0, 0}, 3, {1, 0, 1}, -0.5, 0.55);
 const Screen kSphere = round({0, 0, 0}, 3, {1, 1, 1}, -100, 100);
 
 cv::Matx33d turned(double yaw, double pitch, double roll) {
@@ -90,7 +90,7 @@ struct Room {
                 projectors.push_back({{askew(), askew(), askew() - 0.2},
                                       turned((column - (columns - 1) / 2.0) * 0.46 + askew(),
                                              -(row - (rows - 1) / 2.0) * 0.34 + askew(), askew()),
-                                      {1150, 0, kWidth / 2.0, 0, 1150, kHeight / 2.0, 0, 0, 1}});
+                                      {720, 0, kWidth / 2.0, 0, 720, kHeight / 2.0, 0, 0, 1}});
     }
     LightMaps light_of(const Stand& projector) const {
         LightMaps out{cv::Mat(kPicture, CV_32F, cv::Scalar(kNowhere)), cv::Mat(kPicture, CV_32F, cv::Scalar(kNowhere))};
@@ -190,12 +190,11 @@ TEST_P(CurvedCalibration, IsRightFromWhereTheCameraStands) {
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_LT(found->error, 1.0) << "matches are whole pixels of the camera and of the projector";
     const auto shown = show(room, found->tiles);
-    ASSERT_GT(shown.canvas.size(), 3000u);
+    ASSERT_GT(shown.canvas.size(), 2000u);
     EXPECT_LT(percentile(shown.off, 95), kGoodEnough);
     EXPECT_LT(percentile(shown.brightness, 99), 0.02) << "even in the overlaps";
     RecordProperty("off", std::to_string(percentile(shown.off, 95)));
-    std::cout << name << ": " << percentile(shown.off, 95) << " pixels, light " << percentile(shown.brightness, 99)
-              << '\n';
+    RecordProperty("brightness", std::to_string(percentile(shown.brightness, 99)));
     for (const auto& tile : found->tiles) {
         const auto read = config::parse_warp(warp_text(tile.warp), "a.warp");
         ASSERT_TRUE(read) << read.error().message;
@@ -206,24 +205,24 @@ TEST_P(CurvedCalibration, IsRightFromWhereTheCameraStands) {
 INSTANTIATE_TEST_SUITE_P(Rooms, CurvedCalibration,
                          ::testing::Values(std::tuple("cylinder", kCylinder, 3, 1), std::tuple("band", kBand, 2, 1),
                                            std::tuple("sphere", kSphere, 2, 2)),
-                         [](const auto& info) { return std::string(std::get<0>(info.param)); });
+                         [](const auto& room) { return std::string(std::get<0>(room.param)); });
 
-TEST(CurvedCalibration, ARimThatEndsBeforeTheLightIsBlackBeyond) {
+TEST(CurvedScreen, ARimThatEndsBeforeTheLightIsBlackBeyond) {
     const Room room(kBand, 1, 1);
     const auto found = calibrate(room, 1);
     ASSERT_TRUE(found) << found.error().message;
     const auto& points = found->tiles[0].warp.points;
     EXPECT_TRUE(std::isnan(points.front().x)) << "light that misses the screen";
     EXPECT_FALSE(std::isnan(points[points.size() / 2].x));
-    EXPECT_GE(percentile(show(room, found->tiles).brightness, 0), 0);
 }
 
-TEST(CurvedCalibration, SaysWhatIsWrong) {
+TEST(CurvedScreen, SaysWhatIsWrong) {
     std::vector<Seen> seen(1, {kWidth, kHeight, {}});
     cv::RNG random(3);
     for (int i = 0; i < 60'000; ++i)  // as if the camera had moved between the photographs
-        seen[0].matches.push_back({{random.uniform(0.0, 1600.0), random.uniform(0.0, 1000.0)},
-                                   {random.uniform(0.0, 1.0 * kWidth), random.uniform(0.0, 1.0 * kHeight)}});
+        seen[0].matches.push_back(
+            {{random.uniform(0.0, 1.0 * kPicture.width), random.uniform(0.0, 1.0 * kPicture.height)},
+             {random.uniform(0.0, 1.0 * kWidth), random.uniform(0.0, 1.0 * kHeight)}});
     EXPECT_THAT(find_curved_screen(nullptr, seen).error().message, HasSubstr("fit no smooth screen"));
     seen[0].matches.resize(7);
     EXPECT_THAT(find_curved_screen(nullptr, seen).error().message, HasSubstr("no part is seen"));
@@ -244,8 +243,8 @@ std::vector<cv::Mat> boards(std::size_t count) {
     std::vector<cv::Mat> out;
     for (std::size_t i = 0; i < count; ++i) {
         const auto k = static_cast<double>(i);
-        const cv::Matx33d turn = turned(0.5 * std::cos(k * 2.1), 0.45 * std::sin(k * 1.7), 0.1 * k);
-        const cv::Vec3d place(280 * std::cos(k * 1.3), 160 * std::sin(k * 2.3), 700 + 40 * std::cos(k));
+        const cv::Matx33d turn = turned(0.5 * std::cos(k * 2.1), 0.45 * std::sin(k * 1.7), 0.05 * k);
+        const cv::Vec3d place(250 * std::cos(k * 1.3), 110 * std::sin(k * 2.3), 850 + 80 * std::cos(k));
         // From the board's pixels (z = 0, its middle at the origin) to the ideal camera's.
         const cv::Matx33d to_board(1, 0, -board.cols / 2.0, 0, 1, -board.rows / 2.0, 0, 0, 1);
         cv::Matx33d plane = turn;
@@ -266,7 +265,7 @@ std::vector<cv::Mat> boards(std::size_t count) {
 }
 
 TEST(CameraLens, IsFoundFromPhotographsOfABoard) {
-    const auto found = find_lens(boards(10), {9, 6});
+    const auto found = find_lens(boards(16), {9, 6});
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_LT(found->error, 0.3);
     std::vector<cv::Point2d> seen, off;
