@@ -45,9 +45,9 @@ class Trial:
             self.app = self.wall.run_at(CLIENT, CLOCK, "--size", "600x300", "--fps", 10, rect=(0, 0, 600, 300),
                                         env=self.x.environment())
             self.session = self.wall.wait_session()
-        self.until(lambda: self.program() is not None and not self.program()["silent"], "the program is on the wall")
+        self.until(lambda: self.is_silent() is False, "the program is on the wall")
         self.until(lambda: all(node["up"] and not node["silent"] for node in self.wall.nodes()), "all nodes answer")
-        self.wall.wait(self.session, self.program()["surfaces"][0]["frame"] + 10)
+        self.wall.wait(self.session, self.frame() + 10)
 
     def until(self, done: Callable[[], bool], what: str) -> float:
         begin = time.monotonic()
@@ -62,6 +62,17 @@ class Trial:
 
     def program(self) -> dict | None:
         return next((s for s in self.wall.sessions() if s["id"] == self.session), None)
+
+    def is_silent(self) -> bool | None:
+        """None: it is not there, as for a moment when it comes back over another link."""
+        program = self.program()
+        return program["silent"] if program else None
+
+    def frame(self) -> int:
+        """The last one shown."""
+        while (program := self.program()) is None:
+            time.sleep(LOOK)
+        return program["surfaces"][0]["frame"]
 
     def heard(self, word: str, since: int) -> bool:
         """Whether the node has said so since its log was so long."""
@@ -94,13 +105,13 @@ class Trial:
 
     def program_stopped(self) -> float:
         self.app.send_signal(signal.SIGSTOP)
-        took = self.until(lambda: self.program()["silent"], "the program is silent")
+        took = self.until(self.is_silent, "the program is silent")
         self.app.send_signal(signal.SIGCONT)
         return took
 
     def client_host_cut_off(self) -> float:
         self.wall.hosts.cut(CLIENT)
-        took = self.until(lambda: self.program()["silent"], "the program is silent")
+        took = self.until(self.is_silent, "the program is silent")
         self.wall.hosts.mend(CLIENT)
         return took
 
