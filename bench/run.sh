@@ -3,7 +3,7 @@
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
 #                                         order, switch, pack, mesh, buffers, late_node, notice, gpus, views, march,
-#                                         off_wall, traffic, share, transport, coding, fair, streams, codec,
+#                                         off_wall, scaling, traffic, share, transport, coding, fair, streams, codec,
 #                                         simulate)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -47,6 +47,7 @@ run gpus bench/gpus.py --json "$results/gpus.json"
 run views bench/views.py --json "$results/views.json"
 run march bench/march.py --json "$results/march.json"
 run off_wall bench/off_wall.py --json "$results/off_wall.json"
+run scaling bench/scaling.py --json "$results/scaling.json"
 run traffic bench/traffic.py --json "$results/traffic.json"
 run share bench/share.py --json "$results/share.json"
 run transport bench/transport.py --json "$results/transport.json"

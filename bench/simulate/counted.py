@@ -51,6 +51,7 @@ class Count:
     trace: Path
     skip: int  # frames
     last: int
+    frames_per_second: float
     packing: float  # seconds of processor time in a frame, of a process's own thread
     sending: float  # of the one that writes to nodes
     bytes: float
@@ -63,20 +64,21 @@ class Count:
 
 
 def count(subject: Subject, tiles: tuple[int, int], folder: Path, x: XServer, *, ranks: int = 1,
-          most: int = 0) -> Count:
+          most: int = 0, environment: dict[str, str] | None = None) -> Count:
     """Of `most` frames, if the subject has more."""
     frames = min(most or subject.frames, subject.frames)
     trace = folder / f"{subject.name}-{tiles[0]}x{tiles[1]}-{ranks}.tsv"
     last = subject.first + frames
     with CountingWall(tiles, TILE, name="count", swap_timeout_ms=NO_LIMIT_MS) as wall:
         app = wall.run(*subject.command, rect=(0, 0, *wall.size), parallel=ranks if ranks > 1 else 0,
-                       env=x.environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                       env=x.environment(**(environment or {})), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         rates = watch(wall, app, subject.first, lambda _, now: now.frame > last, LIMIT,
                       lambda: wall.rest("GET", "/api/v1/sessions")[1])
         end_all(wall.apps)
         wall.take_trace(trace)
     rows = [row for row in read(trace) if subject.first < row["frame"] <= last]
-    return Count(subject.name, tiles, ranks, trace, subject.first, last, rates.packing, rates.sending,
+    return Count(subject.name, tiles, ranks, trace, subject.first, last, rates.frames_per_second,
+                 rates.packing, rates.sending,
                  sum(row["link"] for row in rows) / frames, sum(row["vertices"] for row in rows) / frames,
                  len(rows) / frames)
 
