@@ -35,16 +35,14 @@ Result<Bit> take(const Photograph& photograph, Shot shot, const cv::Size& size) 
 Result<void> read_axis(int pixels, bool rows, const Photograph& photograph, const cv::Mat& contrast, cv::Mat& seen,
                        cv::Mat& codes) {
     codes = cv::Mat(seen.size(), CV_32S, cv::Scalar(0));
+    cv::Mat least, difference;
+    contrast.convertTo(least, CV_32F, kLeastOfContrast);
     for (int bit = bits_for(pixels) - 1; bit >= 0; --bit) {
         const auto both = take(photograph, {.kind = Shot::Kind::code, .bit = bit, .rows = rows}, seen.size());
         if (!both) return tl::unexpected(both.error());
-        for (int y = 0; y < seen.rows; ++y) {
-            for (int x = 0; x < seen.cols; ++x) {
-                const int difference = both->shown.at<uchar>(y, x) - both->inverted.at<uchar>(y, x);
-                if (std::abs(difference) < kLeastOfContrast * contrast.at<uchar>(y, x)) seen.at<uchar>(y, x) = 0;
-                if (difference > 0) codes.at<int>(y, x) |= 1 << bit;
-            }
-        }
+        cv::subtract(both->shown, both->inverted, difference, cv::noArray(), CV_32F);
+        seen.setTo(0, cv::abs(difference) < least);
+        cv::add(codes, cv::Scalar(1 << bit), codes, difference > 0);
     }
     return {};
 }

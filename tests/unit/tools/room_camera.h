@@ -20,6 +20,9 @@ struct LightMaps {
 /// A projector of width x height pixels alone, with noise of that many levels, a light that is brighter on the left,
 /// and a room that is not dark.
 inline Photograph photograph(LightMaps maps, int width, int height, double noise, std::uint64_t seed) {
+    cv::Mat shade(maps.x.size(), CV_32F);
+    for (int x = 0; x < shade.cols; ++x)
+        shade.col(x).setTo(0.75f - 0.35f * static_cast<float>(x) / static_cast<float>(shade.cols));
     return [=, random = cv::RNG(seed)](const Shot& shot) mutable -> Result<cv::Mat> {
         using tileserver::TestPattern;
         const TestPattern pattern{.kind = shot.kind == Shot::Kind::white   ? TestPattern::Kind::white
@@ -29,19 +32,15 @@ inline Photograph photograph(LightMaps maps, int width, int height, double noise
                                   .rows = shot.rows,
                                   .inverted = shot.inverted};
         const auto pixels = tileserver::pattern_pixels(pattern, {0, 0, width, height});
-        cv::Mat shown(height, width, CV_8UC1), light, out;
-        for (int i = 0; i < width * height; ++i)
-            shown.data[i] = std::to_integer<uchar>(pixels[4 * static_cast<std::size_t>(i)]);
+        const cv::Mat all(height, width, CV_8UC4, const_cast<std::byte*>(pixels.data()));
+        cv::Mat shown, light, out;
+        cv::extractChannel(all, shown, 0);
         shown.convertTo(shown, CV_32F);
         cv::remap(shown, light, maps.x, maps.y, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
         cv::GaussianBlur(light, light, {5, 5}, 0.8);
         cv::Mat noisy(light.size(), CV_32F);
         random.fill(noisy, cv::RNG::NORMAL, 0, noise);
-        for (int y = 0; y < light.rows; ++y)
-            for (int x = 0; x < light.cols; ++x)
-                light.at<float>(y, x) = 18 + light.at<float>(y, x) * (0.75f - 0.35f * static_cast<float>(x) /
-                                                                                  static_cast<float>(light.cols));
-        light += noisy;
+        light = light.mul(shade) + noisy + cv::Scalar(18);
         light.convertTo(out, CV_8U);
         return out;
     };
