@@ -167,7 +167,7 @@ TEST(Calibration, FindsARoomThatNobodyHasSeen) {
             for (std::size_t i = 0; i < found->tiles.size(); ++i) {
                 const auto& tile = found->tiles[i];
                 const auto pixel = apply(room.to_screen[i].inv(), place);
-                light += weight_at(tile, canvas_at(tile, pixel));
+                light += weight_at(tile, canvas_at(tile, output_of(tile), pixel));
             }
             brightness.push_back(std::abs(light - 1));
         }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 
 #include "common/config/read_warp.h"
@@ -72,11 +73,20 @@ cv::Matx33d turned(double yaw, double pitch, double roll) {
     return z * x * y;
 }
 
+/// The camera's, row by row.
+std::vector<cv::Point2d> all_pixels() {
+    std::vector<cv::Point2d> out;
+    for (int y = 0; y < kPicture.height; ++y)
+        for (int x = 0; x < kPicture.width; ++x) out.emplace_back(x + 0.5, y + 0.5);
+    return out;
+}
+
 struct Room {
     Screen screen;
     std::vector<Stand> projectors;
     Stand camera{{0.1, 0.05, -0.6}, turned(0.02, -0.01, 0.01), {}};
     double noise = 3;
+    cv::Mat lit;  ///< what each pixel of the camera sees of the screen, metres; NaN: nothing
 
     /// A row of them, near the middle, each a little askew.
     Room(Screen of, int columns, int rows) : screen(std::move(of)) {
@@ -91,21 +101,29 @@ struct Room {
                                       turned((column - (columns - 1) / 2.0) * 0.46 + askew(),
                                              -(row - (rows - 1) / 2.0) * 0.34 + askew(), askew()),
                                       {720, 0, kWidth / 2.0, 0, 720, kHeight / 2.0, 0, 0, 1}});
+        const auto ideal = straight(kLens, all_pixels());
+        std::vector<cv::Vec3d> ways, points;
+        cv::convertPointsToHomogeneous(ideal, ways);
+        cv::transform(ways, ways, camera.turn.t() * camera.pixels.inv());
+        constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+        for (const cv::Vec3d& way : ways)
+            points.push_back(
+                screen(camera.place, cv::normalize(way)).value_or(cv::Vec3d(kNothing, kNothing, kNothing)));
+        lit = cv::Mat(points, true).reshape(3, kPicture.height);
     }
     LightMaps light_of(const Stand& projector) const {
-        LightMaps out{cv::Mat(kPicture, CV_32F, cv::Scalar(kNowhere)), cv::Mat(kPicture, CV_32F, cv::Scalar(kNowhere))};
-        std::vector<cv::Point2d> pixels;
-        for (int y = 0; y < kPicture.height; ++y)
-            for (int x = 0; x < kPicture.width; ++x) pixels.emplace_back(x + 0.5, y + 0.5);
-        const auto ideal = straight(kLens, pixels);
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            const auto point = screen(camera.place, camera.ray(ideal[i]));
-            const auto at = point ? projector.pixel(*point) : std::nullopt;
-            if (!at) continue;
-            out.x.at<float>(static_cast<int>(pixels[i].y), static_cast<int>(pixels[i].x)) =
-                static_cast<float>(at->x - 0.5);
-            out.y.at<float>(static_cast<int>(pixels[i].y), static_cast<int>(pixels[i].x)) =
-                static_cast<float>(at->y - 0.5);
+        const cv::Matx33d seen = projector.pixels * projector.turn;
+        cv::Mat at;
+        cv::transform(lit - cv::Scalar(projector.place[0], projector.place[1], projector.place[2]), at, seen);
+        std::array<cv::Mat, 3> axes;
+        cv::split(at, axes.data());
+        LightMaps out;
+        for (cv::Mat* map : {&out.x, &out.y}) {
+            cv::Mat& axis = axes[map == &out.x ? 0 : 1];
+            axis = axis / axes[2] - 0.5;
+            axis.convertTo(*map, CV_32F);
+            map->setTo(kNowhere, axes[2] != axes[2]);  // no number
+            map->setTo(kNowhere, axes[2] <= 0);
         }
         return out;
     }
@@ -155,11 +173,13 @@ struct Shown {
 
 Shown show(const Room& room, const std::vector<PlannedTile>& tiles) {
     Shown out;
+    std::vector<geom::TileOutput> outputs;
+    for (const auto& tile : tiles) outputs.push_back(output_of(tile));
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         for (int y = 3; y < kHeight; y += 7) {
             for (int x = 3; x < kWidth; x += 7) {
                 const cv::Point2d pixel(x, y);
-                const auto canvas = canvas_at(tiles[i], pixel);
+                const auto canvas = canvas_at(tiles[i], outputs[i], pixel);
                 if (weight_at(tiles[i], canvas) == 0) continue;
                 const auto point = room.screen(room.projectors[i].place, room.projectors[i].ray(pixel));
                 if (!point) continue;
@@ -169,7 +189,7 @@ Shown show(const Room& room, const std::vector<PlannedTile>& tiles) {
                 for (std::size_t k = 0; k < tiles.size(); ++k) {
                     const auto at = room.projectors[k].pixel(*point);
                     if (at && at->x >= 0 && at->y >= 0 && at->x <= kWidth && at->y <= kHeight)
-                        light += weight_at(tiles[k], canvas_at(tiles[k], *at));
+                        light += weight_at(tiles[k], canvas_at(tiles[k], outputs[k], *at));
                 }
                 out.brightness.push_back(std::abs(light - 1));
             }
@@ -236,10 +256,7 @@ std::vector<cv::Mat> boards(std::size_t count) {
         for (int x = 0; x < 10; ++x)
             if ((x + y) % 2 == 0)
                 board(cv::Rect(kMargin + x * kSquare, kMargin + y * kSquare, kSquare, kSquare)).setTo(20);
-    std::vector<cv::Point2d> pixels;
-    for (int y = 0; y < kPicture.height; ++y)
-        for (int x = 0; x < kPicture.width; ++x) pixels.emplace_back(x + 0.5, y + 0.5);
-    const auto ideal = straight(kLens, pixels);
+    const cv::Mat ideal = cv::Mat(straight(kLens, all_pixels()), true) - cv::Scalar(0.5, 0.5);
     std::vector<cv::Mat> out;
     for (std::size_t i = 0; i < count; ++i) {
         const auto k = static_cast<double>(i);
@@ -250,14 +267,11 @@ std::vector<cv::Mat> boards(std::size_t count) {
         cv::Matx33d plane = turn;
         for (int row = 0; row < 3; ++row) plane(row, 2) = place[row];
         const cv::Matx33d back = (kLens.matrix * plane * to_board).inv();
-        LightMaps maps{cv::Mat(kPicture, CV_32F), cv::Mat(kPicture, CV_32F)};
-        for (std::size_t p = 0; p < pixels.size(); ++p) {
-            const auto at = apply(back, ideal[p] - cv::Point2d(0.5, 0.5));
-            maps.x.at<float>(static_cast<int>(pixels[p].y), static_cast<int>(pixels[p].x)) = static_cast<float>(at.x);
-            maps.y.at<float>(static_cast<int>(pixels[p].y), static_cast<int>(pixels[p].x)) = static_cast<float>(at.y);
-        }
+        cv::Mat at;
+        cv::perspectiveTransform(ideal, at, back);
+        at.reshape(2, kPicture.height).convertTo(at, CV_32F);
         cv::Mat photograph;
-        cv::remap(board, photograph, maps.x, maps.y, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(128));
+        cv::remap(board, photograph, at, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(128));
         cv::GaussianBlur(photograph, photograph, {5, 5}, 0.8);
         out.push_back(photograph);
     }

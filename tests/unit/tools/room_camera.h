@@ -46,10 +46,12 @@ inline Photograph photograph(LightMaps maps, int width, int height, double noise
     };
 }
 
-/// Where a tile's output shows what it shows at one of its pixels.
-inline cv::Point2d canvas_at(const PlannedTile& tile, const cv::Point2d& pixel) {
-    const geom::TileOutput output{
-        .width = tile.width, .height = tile.height, .warp = std::make_shared<const geom::Warp>(tile.warp)};
+inline geom::TileOutput output_of(const PlannedTile& tile) {
+    return {.width = tile.width, .height = tile.height, .warp = std::make_shared<const geom::Warp>(tile.warp)};
+}
+
+/// Where on the canvas is what a tile shows at a pixel of its output_of().
+inline cv::Point2d canvas_at(const PlannedTile& tile, const geom::TileOutput& output, const cv::Point2d& pixel) {
     const auto at = geom::place_in_tile(
         output, {static_cast<float>(pixel.x / tile.width), static_cast<float>(pixel.y / tile.height)});
     return {tile.rect.x + static_cast<double>(at.x) * tile.rect.width,
