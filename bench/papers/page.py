@@ -92,7 +92,7 @@ def number(value: float) -> str:
 def is_better(row: dict, value: float) -> bool | None:
     if "better" not in row:
         return None
-    return value >= row["theirs"] if row["better"] == "more" else value <= row["theirs"]
+    return value >= row["theirs"] if row["better"] == "higher" else value <= row["theirs"]
 
 
 def table_row(reports: Reports, row: dict) -> tuple[str, bool]:

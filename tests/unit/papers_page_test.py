@@ -38,15 +38,15 @@ class Page(unittest.TestCase):
         self.assertEqual(page.ours(self.reports, {"ours": ["rates", "all", "one"], "inverse": True, "times": 100}), 25)
 
     def test_what_is_better_is_said_by_the_numbers(self):
-        self.assertEqual(self.row(theirs=9, ours=["rates", "all", "two"], better="more"),
+        self.assertEqual(self.row(theirs=9, ours=["rates", "all", "two"], better="higher"),
                          ("| it | 9.00 | 10.0 |  |", True))
-        self.assertEqual(self.row(theirs=9, ours=["rates", "all", "two"], better="less"),
+        self.assertEqual(self.row(theirs=9, ours=["rates", "all", "two"], better="lower"),
                          ("| it | 9.00 | 10.0 | not better: nobody has said why |", False))
-        self.assertEqual(self.row(theirs=9, ours=["rates", "all", "two"], better="less", why="it is cold"),
+        self.assertEqual(self.row(theirs=9, ours=["rates", "all", "two"], better="lower", why="it is cold"),
                          ("| it | 9.00 | 10.0 | not better: it is cold |", True))
         self.assertEqual(self.row(theirs="a picture", ours=["rates", "all", "two"]),
                          ("| it | a picture | 10.0 |  |", True))
-        self.assertEqual(self.row(theirs=9, ours=["later"], better="more"), ("| it | 9.00 | not run |  |", True))
+        self.assertEqual(self.row(theirs=9, ours=["later"], better="higher"), ("| it | 9.00 | not run |  |", True))
         self.assertEqual(self.row(theirs=9, why="later"), ("| it | 9.00 | none | later |", True))
         self.assertFalse(self.row(theirs=9)[1])
 
@@ -77,7 +77,7 @@ class Page(unittest.TestCase):
         for table in (table for paper in PAPERS for table in paper["table"]):
             for row in table["row"]:
                 self.assertLessEqual(set(row), known, row)
-                self.assertIn(row.get("better", "more"), ("more", "less"))
+                self.assertIn(row.get("better", "higher"), ("higher", "lower"))
                 if "better" in row:
                     self.assertNotIsInstance(row["theirs"], str, row)
                 for way in (row[name] for name in ("ours", "over") if name in row):
