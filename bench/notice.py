@@ -70,9 +70,13 @@ class Trial:
 
     def frame(self) -> int:
         """The last one shown."""
-        while (program := self.program()) is None:
-            time.sleep(LOOK)
-        return program["surfaces"][0]["frame"]
+        seen: list[dict] = []
+
+        def look() -> bool:
+            seen[:] = [s for s in (self.program(),) if s]
+            return bool(seen)
+        self.until(look, "the program is on the wall")
+        return seen[0]["surfaces"][0]["frame"]
 
     def heard(self, word: str, since: int) -> bool:
         """Whether the node has said so since its log was so long."""

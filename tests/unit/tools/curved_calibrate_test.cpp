@@ -65,7 +65,6 @@ const Screen kBand = round({0, 0, 0}, 3, {1, 0, 1}, -0.5, 0.55);
 const Screen kSphere = round({0, 0, 0}, 3, {1, 1, 1}, -100, 100);
 
 cv::Matx33d turned(double yaw, double pitch, double roll) {
-    cv::Matx33d out;
     cv::Matx33d x, y, z;
     cv::Rodrigues(cv::Vec3d(-pitch, 0, 0), x);
     cv::Rodrigues(cv::Vec3d(0, -yaw, 0), y);
