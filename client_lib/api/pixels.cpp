@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/buffer_binding.h"
@@ -14,6 +15,7 @@
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/objects/texture.h"
+#include "common/glstate/raster_place.h"
 #include "common/wire/limits.h"
 
 namespace wall::client::api {
@@ -32,6 +34,26 @@ PixelRect drawn_rect(const Context& c, float width, float height) {
             std::max(position[1], y) + kMargin};
 }
 
+/// An image is drawn at the raster position: in the program's own picture, or where only tiles see it that look
+/// elsewhere.
+bool may_draw_at_raster(const Context& c) {
+    const auto& raster = c.state.raster;
+    return raster.raster_position_valid || (raster.raster_clip[3] != 0.0f && c.state.local.render_mode == GL_RENDER);
+}
+
+/// `window`: what it covers there, if the raster position is valid.
+template <class Pack>
+void draw_at_raster(Context& c, const PixelRect& window, Pack&& pack) {
+    const auto& raster = c.state.raster;
+    if (raster.raster_clip[3] == 0.0f) return c.draw(window, std::forward<Pack>(pack));
+    const auto projection = glstate::make_projection(c.state);
+    const auto first = glstate::window_position(c.state, raster.raster_clip);
+    const PixelRect around{window.x0 - first[0], window.y0 - first[1], window.x1 - first[0], window.y1 - first[1]};
+    c.draw(Drawn::image(projection, raster.raster_clip, around,
+                        raster.raster_position_valid ? std::optional(window) : std::nullopt),
+           std::forward<Pack>(pack));
+}
+
 /// Whether the buffers that a format means exist.
 bool buffers_exist(Context& c, GLenum format) {
     switch (format) {
@@ -48,8 +70,9 @@ void draw_tight(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
                 std::span<const std::byte> pixels) {
     const bool color = format != GL_DEPTH_COMPONENT && format != GL_STENCIL_INDEX && format != GL_DEPTH_STENCIL;
     if (!color && c.draw_target()) c.draw_target().note_depth_image();
-    c.draw(drawn_rect(c, static_cast<float>(width), static_cast<float>(height)),
-           [&](wire::PackBuffer& buffer) { glapi::pack::DrawPixels(buffer, width, height, format, type, pixels); });
+    draw_at_raster(
+        c, drawn_rect(c, static_cast<float>(width), static_cast<float>(height)),
+        [&](wire::PackBuffer& buffer) { glapi::pack::DrawPixels(buffer, width, height, format, type, pixels); });
 }
 
 void set_color_transfer(Context& c, const glstate::PixelTransferState& t) {
@@ -197,7 +220,7 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!may_draw_fragments(c)) return;
     if (!buffers_exist(c, format)) return c.error(GL_INVALID_OPERATION);
-    if (!c.state.raster.raster_position_valid) return;
+    if (!may_draw_at_raster(c)) return;
     if (c.state.local.render_mode != GL_RENDER)
         return feed_back(
             c, [](wire::PackBuffer& b) { glapi::pack::DrawPixels(b, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, kOnePixel); });
@@ -216,7 +239,7 @@ void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yo
             const GLubyte* bitmap) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (!may_draw_fragments(c)) return;
-    if (!c.state.raster.raster_position_valid) return;
+    if (!may_draw_at_raster(c)) return;
     auto position = c.state.raster.raster_position;
     const bool drawing = c.state.local.render_mode == GL_RENDER;
     if (!drawing)
@@ -230,8 +253,9 @@ void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yo
         const float x = position[0] - xorig - kMargin, y = position[1] - yorig - kMargin;
         const PixelRect box{x, y, x + static_cast<float>(width) + 2 * kMargin,
                             y + static_cast<float>(height) + 2 * kMargin};
-        c.draw(box,
-               [&](wire::PackBuffer& buffer) { glapi::pack::Bitmap(buffer, width, height, xorig, yorig, 0, 0, bits); });
+        draw_at_raster(c, box, [&](wire::PackBuffer& buffer) {
+            glapi::pack::Bitmap(buffer, width, height, xorig, yorig, 0, 0, bits);
+        });
     }
     position[0] += xmove;
     position[1] += ymove;
@@ -267,7 +291,7 @@ void CopyPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
         return c.error(GL_INVALID_ENUM);
     if (!may_draw_fragments(c) || !may_read_pixels(c)) return;
     if (!buffers_exist(c, what)) return c.error(GL_INVALID_OPERATION);
-    if (!c.state.raster.raster_position_valid || c.state.local.render_mode == GL_SELECT) return;
+    if (!may_draw_at_raster(c) || c.state.local.render_mode == GL_SELECT) return;
     const PixelBox from = clip_to_window(c, {x, y, width, height});
     if (from.empty()) return;
     const GLenum format = what == GL_COLOR     ? GL_RGBA

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The current raster position (OpenGL 1.2.1, 2.12), computed here with the float operations of Mesa's _mesa_RasterPos
-// in their order, so that text lands on the same pixels as in a window. Of vertex shaders and programs a node says it.
+// The current raster position and what belongs to it (OpenGL 1.2.1, 2.12), computed here with the float operations of
+// Mesa's _mesa_RasterPos in their order (raster_place.h). Of vertex shaders and programs a node says it.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,6 +10,7 @@
 #include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/matrix.h"
+#include "common/glstate/raster_place.h"
 
 namespace wall::client::api {
 namespace {
@@ -37,12 +38,6 @@ Vec4 clamped(Vec4 color) {
 }
 
 // ---- visibility ----
-
-bool in_view_volume(const glstate::State& s, const Vec4& clip) {
-    const float nearest = s.transform.clip_control.depth == GL_ZERO_TO_ONE ? 0 : -clip[3];
-    if (!s.transform.depth_clamp && (clip[2] > clip[3] || clip[2] < nearest)) return false;
-    return !(clip[0] > clip[3] || clip[0] < -clip[3] || clip[1] > clip[3] || clip[1] < -clip[3]);
-}
 
 /// Clip planes are in eye coordinates; Mesa compares in clip coordinates.
 bool in_user_planes(const glstate::State& s, const Vec4& clip) {
@@ -193,25 +188,6 @@ void set_texcoords(const glstate::State& s, const Generated& g, RasterState& ras
 
 // ----
 
-void set_window_position(const glstate::State& s, const Vec4& clip, RasterState& raster) {
-    const auto& v = s.window.viewport;
-    const auto& range = s.transform.depth_range;
-    const float d = clip[3] == 0.0f ? 1.0f : 1.0f / clip[3];
-    const float half_width = 0.5f * static_cast<float>(v.width), half_height = 0.5f * static_cast<float>(v.height);
-    const bool from_zero = s.transform.clip_control.depth == GL_ZERO_TO_ONE;
-    const double depths = range.far_value - range.near_value;
-    const auto z_scale = static_cast<float>(from_zero ? depths : 0.5 * depths);
-    const auto z_offset = static_cast<float>(from_zero ? range.near_value : 0.5 * (range.far_value + range.near_value));
-    const float up = s.transform.clip_control.origin == GL_LOWER_LEFT ? 1.0f : -1.0f;
-    raster.raster_position = {clip[0] * d * half_width + (half_width + static_cast<float>(v.x)),
-                              up * clip[1] * d * half_height + (half_height + static_cast<float>(v.y)),
-                              clip[2] * d * z_scale + z_offset, clip[3]};
-    if (s.transform.depth_clamp) {
-        const auto [low, high] = std::minmax(static_cast<float>(range.near_value), static_cast<float>(range.far_value));
-        raster.raster_position[2] = std::clamp(raster.raster_position[2], low, high);
-    }
-}
-
 bool needs_normal(const glstate::State& s) {
     const auto& generated = s.texture_gen.tex_gen_enabled;
     return s.lighting.lighting_enabled ||
@@ -241,8 +217,12 @@ std::optional<RasterState> ask_raster_position(Context& c, const Vec4& object) {
     RasterState raster;
     if (!answer || answer->bytes.size() != sizeof raster) return std::nullopt;
     std::memcpy(&raster, answer->bytes.data(), sizeof raster);
+    raster.raster_clip = {};  // of which camera it is is not known
     return raster;
 }
+
+/// Tiles look at what is drawn to the window otherwise than its own picture does, or would.
+bool is_seen_elsewhere(Context& c) { return c.attached() && c.session().is_seen_elsewhere(c.draw_target()); }
 
 /// A valid raster position is a hit while selecting, as a point at the same place would be.
 void mark_hit(Context& c, const Vec4& object) {
@@ -268,9 +248,11 @@ void RasterPos4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
     }
     const Vec4 eye = transform_point(s.matrix.modelview, object);
     const Vec4 clip = transform_point(s.matrix.projection, eye);
-    raster.raster_position_valid = in_view_volume(s, clip) && in_user_planes(s, clip);
-    if (!raster.raster_position_valid) return assign(c, raster);
-    set_window_position(s, clip, raster);
+    const bool kept = in_user_planes(s, clip);
+    raster.raster_position_valid = kept && glstate::in_view_volume(s, clip);
+    raster.raster_clip = kept && is_seen_elsewhere(c) ? glstate::raster_clip(s, clip) : Vec4{};
+    if (!raster.raster_position_valid && raster.raster_clip[3] == 0.0f) return assign(c, raster);
+    raster.raster_position = glstate::window_position(s, clip);
     raster.raster_distance = s.fog.fog_coord_source == GL_FOG_COORDINATE
                                  ? s.current.fog_coord
                                  : std::sqrt(eye[0] * eye[0] + eye[1] * eye[1] + eye[2] * eye[2]);
@@ -280,6 +262,7 @@ void RasterPos4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
         prepare_reflection(g);
     }
     if (s.lighting.lighting_enabled) {
+        glstate::adopt_current_color(c.state);  // what of the material follows it
         const Shading shading = shade(s, object, g.normal);
         raster.raster_color = shading.color;
         raster.raster_secondary_color = shading.specular;
@@ -289,7 +272,7 @@ void RasterPos4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
     }
     set_texcoords(s, g, raster);
     assign(c, raster);
-    if (s.local.render_mode == GL_SELECT) mark_hit(c, object);
+    if (raster.raster_position_valid && s.local.render_mode == GL_SELECT) mark_hit(c, object);
 }
 
 void WindowPos3f(Context& c, GLfloat x, GLfloat y, GLfloat z) {
@@ -300,6 +283,7 @@ void WindowPos3f(Context& c, GLfloat x, GLfloat y, GLfloat z) {
     RasterState raster = s.raster;
     raster.raster_position = {x, y, std::clamp(z, 0.0f, 1.0f) * (far - near) + near, 1.0f};
     raster.raster_position_valid = 1;
+    raster.raster_clip = {};
     raster.raster_distance = s.fog.fog_coord_source == GL_FOG_COORDINATE ? s.current.fog_coord : 0.0f;
     raster.raster_color = clamped(s.current.color);
     raster.raster_secondary_color = clamped(s.current.secondary_color);

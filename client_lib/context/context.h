@@ -124,17 +124,17 @@ public:
         flush_block();
         session_->flush(draw_target(), wait);
     }
-    /// Draws with a command other than vertices. `box`: what it touches, in window pixels; nothing: unknown.
+    /// Draws with a command other than vertices.
     template <class Pack>
-    void draw(const std::optional<PixelRect>& box, Pack&& pack) {
-        draw(box, Needs{}, std::forward<Pack>(pack));
+    void draw(const Drawn& drawn, Pack&& pack) {
+        draw(drawn, Needs{}, std::forward<Pack>(pack));
     }
     /// The same for a command that depends on a part of the state only.
     template <class Pack>
-    void draw(const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
+    void draw(const Drawn& drawn, const Needs& needs, Pack&& pack) {
         flush_block();
         if (draws_nothing || state.local.rasterizer_discard) return;
-        session_->draw(draw_source(), box, needs, std::forward<Pack>(pack));
+        session_->draw(draw_source(), drawn, needs, std::forward<Pack>(pack));
     }
 
     ClientSession& session() { return *session_; }

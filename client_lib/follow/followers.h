@@ -61,6 +61,10 @@ inline void note_content(const DrawSource& source) {
 
 /// Where on the draw target it is, in each of its views. Good until the next call.
 inline Reach reach_of(const Followers& followers, const DrawSource& source, const Drawn& drawn) {
+    if (drawn.clip) {
+        followers.sight.aim(*drawn.seen_by, source.draw.views());
+        return followers.sight.of_image(drawn);
+    }
     if (drawn.projection == nullptr) return drawn.rect;
     followers.sight.aim(*drawn.projection, source.draw.views());
     return drawn.mode ? followers.sight.of(*drawn.box, *drawn.mode) : followers.sight.of(*drawn.box);

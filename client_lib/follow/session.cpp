@@ -165,6 +165,11 @@ std::vector<geom::View> ClientSession::views_of(const DrawTarget& target) {
     return out;
 }
 
+bool ClientSession::is_seen_elsewhere(const DrawTarget& target) {
+    std::lock_guard lock(mutex_);
+    return !target.offered_views().empty();
+}
+
 bool ClientSession::may_be_read(const TargetLayer& layer) {
     std::lock_guard lock(mutex_);
     return !nodes_[layer].records();

@@ -44,6 +44,8 @@ public:
     void begin_frame(ClientSurface& surface);
     /// Where DrawTarget::offered_views() look, as far as they look elsewhere.
     std::vector<geom::View> views_of(const DrawTarget& target);
+    /// There are some, whether they look elsewhere or with one eye.
+    bool is_seen_elsewhere(const DrawTarget& target);
     /// Whether its node answers with pixels; one that records has none.
     bool may_be_read(const TargetLayer& layer);
     Wholeness wholeness(const ClientSurface& surface);

@@ -56,4 +56,25 @@ Reach Sight::of(const Topology& topology, const VertexScan& vertices, std::size_
     return {window_rect(topology, vertices, first, *own_), rects_};
 }
 
+Reach Sight::of_image(const Drawn& image) {
+    const glstate::WindowVertex own{*image.clip, 0, 0, false};  // where it is in the window counts nowhere else
+    rects_.clear();
+    for (std::size_t i = 0; i < through_.size(); ++i) {
+        const auto& [change, projection] = through_[i];
+        if (!change) {
+            rects_.push_back(image.rect);
+            continue;
+        }
+        const auto there = glstate::moved(projection, own, *change);
+        auto rect = hull_rect(projection, {&there, 1});
+        const float x = views_[i].window_pixels_x, y = views_[i].window_pixels_y;  // images keep the tile's pixels
+        const PixelRect& around = image.covered;
+        if (rect)
+            rect = PixelRect{rect->x0 + around.x0 * x, rect->y0 + around.y0 * y, rect->x1 + around.x1 * x,
+                             rect->y1 + around.y1 * y};
+        rects_.push_back(rect);
+    }
+    return {image.rect, rects_};
+}
+
 }  // namespace wall::client

@@ -19,6 +19,7 @@ namespace wall::client {
 struct Drawn {
     /// By a rectangle of the window (a clear, an image); nothing: anywhere.
     Drawn(const std::optional<PixelRect>& window) : rect(window) {}  // NOLINT: of either kind is drawn alike
+    Drawn(const PixelRect& window) : rect(window) {}                 // NOLINT: as those
     Drawn(std::nullopt_t) {}                                         // NOLINT: as those
     /// Primitives in a box, of one mode if it is given.
     Drawn(const glstate::Projection& by, const geom::Box& around, std::optional<GLenum> primitives = {})
@@ -30,11 +31,24 @@ struct Drawn {
         return out;
     }
 
+    /// An image that covers `covered` about the place of `clip`, which the camera of `by` has made (raster_place.h).
+    /// `window`: what it covers in the program's own picture; nothing: it is not drawn there.
+    static Drawn image(const glstate::Projection& by, const glstate::Vec4& clip, const PixelRect& covered,
+                       const std::optional<PixelRect>& window) {
+        Drawn out(window.value_or(PixelRect{}));
+        out.seen_by = &by;
+        out.clip = clip;
+        out.covered = covered;
+        return out;
+    }
+
     std::optional<PixelRect> rect;
     const glstate::Projection* projection = nullptr;  ///< null: `rect` holds
     const geom::Box* box = nullptr;
     std::optional<GLenum> mode;
-    const glstate::Projection* seen_by = nullptr;  ///< whose camera draws them; null: they are no vertices
+    const glstate::Projection* seen_by = nullptr;  ///< whose camera draws them; null: none does
+    std::optional<glstate::Vec4> clip;             ///< of an image(), in views
+    PixelRect covered{};                           ///< of it, about that place
 };
 
 class Sight {
@@ -49,6 +63,8 @@ public:
     Reach of(const geom::Box& box, GLenum mode) {
         return of_box([&](const auto& p) { return project(p, box, mode); });
     }
+    /// Of an image(), by whose camera it was aimed.
+    Reach of_image(const Drawn& image);
     /// The point, line, triangle or quad that starts at vertex `first`, scanned by the program's own projection.
     Reach of(const Topology& topology, const VertexScan& vertices, std::size_t first);
 

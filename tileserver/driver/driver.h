@@ -74,6 +74,8 @@ public:
 
     /// A glBitmap was drawn. Mesa 22 gathers them, and would draw them by the state of a later one.
     void hold_bitmap() { bitmap_held_ = true; }
+    /// Somebody has changed it without the driver's knowing.
+    void restore_pixel_zoom() const { gl_.PixelZoom(window_.pixel_zoom[0], window_.pixel_zoom[1]); }
     /// Everything but vertex attributes and what depends on the target or names objects. The state's categories take
     /// the driver's value ids where they prove equal.
     void sync(glstate::State& state) {

@@ -5,10 +5,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "common/glstate/draw_buffers.h"
+#include "common/glstate/raster_place.h"
 #include "tileserver/driver/accum.h"
 #include "tileserver/execute/image_check.h"
 
@@ -135,14 +137,45 @@ void DrawCommands::Accum(GLenum op, float value) {
 
 // ---- images at the raster position ----
 
-/// Calls `draw` with the driver's raster position at the soft context's, and its colour the raster colour.
+/// Where an image is drawn on the target, and how large its pixels are there.
+struct RasterPlace {
+    float x = 0, y = 0, z = 0;        ///< as glWindowPos has them
+    double scale_x = 1, scale_y = 1;  ///< target pixels of one of the image's
+    bool seen = false;                ///< through a view; images and lines of text are not drawn smaller there
+};
+
+namespace {
+
+/// Nothing: it is drawn nowhere.
+std::optional<RasterPlace> raster_place(const glstate::State& state, const glstate::Vec4& raster,
+                                        const LayerGeometry& g) {
+    namespace el = glstate::el;
+    RasterPlace out{.scale_x = g.scale_x(), .scale_y = g.scale_y()};
+    glstate::SeenRaster there{el::raster_position_valid::ref(state) != 0, raster};
+    if (const auto seen = g.view ? glstate::raster_in_view(*g.view, state, raster) : std::nullopt) {
+        there = *seen;
+        out = {.seen = true};
+    }
+    const auto& [x, y, z, w] = there.position;
+    if (!there.valid || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return std::nullopt;
+    const auto at = layer_point(g, x, y);
+    out.x = static_cast<float>(at.x) + there.right;
+    out.y = static_cast<float>(at.y) + there.up;
+    const auto& depth = el::depth_range::ref(state);
+    const double range = depth.far_value - depth.near_value;
+    out.z = range == 0 ? 0.0f : static_cast<float>((z - depth.near_value) / range);
+    return out;
+}
+
+}  // namespace
+
+/// Calls `draw` with the target's raster position, and with the driver's there and its colour the raster colour.
 template <class Draw>
 void DrawCommands::at_raster_position(Draw&& draw) {
     namespace el = glstate::el;
     const glstate::State& state = execution_.context->state;
-    if (el::raster_position_valid::ref(state) == 0 || !std::isfinite(block_.raster[0]) ||
-        !std::isfinite(block_.raster[1]) || !std::isfinite(block_.raster[2]))
-        return;
+    const auto place = raster_place(state, block_.raster, block_.target->geometry());
+    if (!place) return;
     Driver& driver = execution_.node.driver;
     block_.trail.fold_into(driver.mirror);
     // glWindowPos takes the current colour for the raster colour, and maps z through the depth range.
@@ -152,16 +185,20 @@ void DrawCommands::at_raster_position(Draw&& draw) {
     const auto& secondary = el::raster_secondary_color::ref(state);
     execution_.gl.Color4f(color[0], color[1], color[2], color[3]);
     execution_.gl.SecondaryColor3f(secondary[0], secondary[1], secondary[2]);
-    const auto& depth = el::depth_range::ref(state);
-    const double range = depth.far_value - depth.near_value;
-    const auto at = layer_point(block_.target->geometry(), block_.raster[0], block_.raster[1]);
-    execution_.gl.WindowPos3f(static_cast<float>(at.x), static_cast<float>(at.y),
-                              range == 0 ? 0.0f : static_cast<float>((block_.raster[2] - depth.near_value) / range));
-    draw();
+    execution_.gl.WindowPos3f(place->x, place->y, place->z);
+    draw(*place);
     const auto& now = driver.mirror.current;
     execution_.gl.Color4f(now.color[0], now.color[1], now.color[2], now.color[3]);
     execution_.gl.SecondaryColor3f(now.secondary_color[0], now.secondary_color[1], now.secondary_color[2]);
     if (tracking) execution_.gl.Enable(GL_COLOR_MATERIAL);
+}
+
+/// An image of stencil values has been drawn to a window of samples, by the driver to one of each pixel's.
+void DrawCommands::spread_stencil_of_image(const RasterPlace& place, std::int32_t width, std::int32_t height) {
+    const auto& zoom = glstate::el::pixel_zoom::ref(execution_.context->state);
+    spread_stencil(execution_.gl, *block_.layer, {place.x, place.y},
+                   {place.x + static_cast<double>(width) * zoom.x * place.scale_x,
+                    place.y + static_cast<double>(height) * zoom.y * place.scale_y});
 }
 
 void DrawCommands::DrawPixels(std::int32_t width, std::int32_t height, GLenum format, GLenum type,
@@ -169,14 +206,13 @@ void DrawCommands::DrawPixels(std::int32_t width, std::int32_t height, GLenum fo
     if (!outside_begin() || !image_fits(execution_, format, type, {width, height, 1}, pixels)) return;
     if (!block_.draws || width == 0 || height == 0) return;
     execution_.node.maps.sync_pixel_maps(execution_.gl, execution_.context->maps);
-    at_raster_position([&] {
-        execution_.gl.DrawPixels(width, height, format, type, pixels.data());
-        if (block_.layer == nullptr || block_.layer->samples() == 0 || format != GL_STENCIL_INDEX) return;
-        const LayerGeometry& g = block_.layer->geometry();
+    at_raster_position([&](const RasterPlace& place) {
         const auto& zoom = glstate::el::pixel_zoom::ref(execution_.context->state);
-        const float x = block_.raster[0], y = block_.raster[1];
-        spread_stencil(execution_.gl, *block_.layer, layer_point(g, x, y),
-                       layer_point(g, x + static_cast<float>(width) * zoom.x, y + static_cast<float>(height) * zoom.y));
+        if (place.seen) execution_.gl.PixelZoom(zoom.x, zoom.y);
+        execution_.gl.DrawPixels(width, height, format, type, pixels.data());
+        if (place.seen) execution_.node.driver.restore_pixel_zoom();
+        if (block_.layer != nullptr && block_.layer->samples() != 0 && format == GL_STENCIL_INDEX)
+            spread_stencil_of_image(place, width, height);
     });
 }
 
@@ -188,17 +224,16 @@ void DrawCommands::Bitmap(std::int32_t width, std::int32_t height, float xorig, 
         return execution_.refuse("size does not fit the bits");
     if (block_.draws && width != 0 && height != 0) {
         execution_.node.driver.hold_bitmap();
-        const LayerGeometry& g = block_.target->geometry();
-        at_raster_position([&] {
-            if (!g.scaled())
+        at_raster_position([&](const RasterPlace& place) {
+            if (place.scale_x == 1 && place.scale_y == 1)
                 return execution_.gl.Bitmap(width, height, xorig, yorig, 0, 0,
                                             reinterpret_cast<const GLubyte*>(bits.data()));
-            const auto new_width = std::max(1, static_cast<std::int32_t>(std::lround(width * g.scale_x())));
-            const auto new_height = std::max(1, static_cast<std::int32_t>(std::lround(height * g.scale_y())));
+            const auto new_width = std::max(1, static_cast<std::int32_t>(std::lround(width * place.scale_x)));
+            const auto new_height = std::max(1, static_cast<std::int32_t>(std::lround(height * place.scale_y)));
             if (std::int64_t{new_width} * new_height > kMaxScaledBitmap) return;
             const auto scaled = scale_bitmap(bits, width, height, new_width, new_height);
-            execution_.gl.Bitmap(new_width, new_height, static_cast<float>(xorig * g.scale_x()),
-                                 static_cast<float>(yorig * g.scale_y()), 0, 0, scaled.data());
+            execution_.gl.Bitmap(new_width, new_height, static_cast<float>(xorig * place.scale_x),
+                                 static_cast<float>(yorig * place.scale_y), 0, 0, scaled.data());
         });
     }
     if (glstate::el::raster_position_valid::ref(execution_.context->state) == 0) return;

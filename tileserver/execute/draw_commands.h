@@ -11,6 +11,8 @@
 
 namespace wall::tileserver {
 
+struct RasterPlace;  // draw_commands.cpp
+
 class DrawCommands {
 public:
     /// Both outlive it.
@@ -47,6 +49,7 @@ private:
     bool call_parts(const RunContent& run);
     template <class Draw>
     void at_raster_position(Draw&& draw);
+    void spread_stencil_of_image(const RasterPlace& place, std::int32_t width, std::int32_t height);
 
     Execution& execution_;
     OpenBlock& block_;

@@ -139,6 +139,26 @@ void ribbon() {
     glEnd();
 }
 
+/// Labels in the scene, all around: letters that move the raster position, and an image. Each view has its own, also
+/// those that the camera does not see.
+void labels() {
+    static constexpr GLubyte kLetters[2][8] = {{0x81, 0x42, 0x24, 0x18, 0x18, 0x24, 0x42, 0x81},
+                                               {0xff, 0x80, 0x80, 0xfc, 0x80, 0x80, 0x80, 0xff}};
+    std::array<GLubyte, 6 * 5 * 4> image{};
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<GLubyte>(i * 7);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    for (int i = 0; i < 21; ++i) {
+        const float angle = 0.3f + 2 * std::numbers::pi_v<float> * static_cast<float>(i) / 21;
+        glColor3f(1, 0.2f + 0.03f * static_cast<float>(i), 0.9f);
+        glRasterPos3f(2.2f * std::sin(angle), 0.37f * std::cos(5 * angle), -2.2f * std::cos(angle));
+        for (const auto& letter : {kLetters[0], kLetters[1], kLetters[0]}) glBitmap(8, 8, 1, 2, 9.5f, 0, letter);
+        if (i % 3 != 0) continue;
+        glPixelZoom(2.137f, 1.513f);  // odd, as in pixels.cpp
+        glDrawPixels(6, 5, GL_RGBA, GL_UNSIGNED_BYTE, image.data());
+        glPixelZoom(1, 1);
+    }
+}
+
 void title(Size canvas) {
     pixel_view(canvas);
     glDisable(GL_DEPTH_TEST);
@@ -202,6 +222,7 @@ SCENE(around, 6) {
     if (frame == 5) for_each_pillar([] { lit_sphere(12, 6); });
     else for_each_pillar([] { glCallList(sphere); });
     glUseProgram(0);
+    labels();
     for (const GLenum on : {GL_FOG, GL_CLIP_PLANE0, GL_LIGHTING, GL_LIGHT0, GL_COLOR_MATERIAL, GL_NORMALIZE})
         glDisable(on);
     title(canvas);

@@ -9,6 +9,7 @@
 #include "common/glapi/assembly_format.h"
 #include "common/glapi/program_format.h"
 #include "common/glstate/pieces.h"
+#include "common/glstate/raster_place.h"
 #include "common/glstate/vertex_input.h"
 #include "common/glstate/view_change.h"
 #include "tests/unit/tileserver/test_node.h"
@@ -177,6 +178,77 @@ protected:
     std::vector<glapi::UniformName> uniforms_;
     const std::vector<Vertex> ring_ = ring();
 };
+
+TEST_F(TilesThatLookElsewhere, LabelsLieWhereTheyAreSeen) {
+    constexpr std::array<GLubyte, 8> kLetter{0xff, 0x81, 0xbd, 0xa5, 0xa5, 0xbd, 0x81, 0xff};
+    constexpr std::array<GLubyte, 3 * 2 * 4> kImage{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255,
+                                                    9,   9, 0, 255, 0, 200, 9, 255, 7, 7, 255, 255};
+    constexpr float kMove = 9.25f;
+    std::vector<Vertex> places;
+    for (int i = 0; i < 40; ++i)
+        places.push_back({3 * std::sin(0.31f * static_cast<float>(i)), 0.5f * std::cos(static_cast<float>(i)),
+                          -3 * std::cos(0.31f * static_cast<float>(i))});
+    // What plain Mesa draws by a view's own matrices.
+    const auto wanted = [&](const Mat4& projection) {
+        Pixels pixels;
+        {
+            ReferenceWindow window(kWidth, kHeight);
+            const Gl& gl = window.gl();
+            gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+            gl.MatrixMode(GL_PROJECTION);
+            gl.LoadMatrixf(projection.data());
+            gl.MatrixMode(GL_MODELVIEW);
+            gl.LoadMatrixf(kModelview.data());
+            gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+            gl.PixelZoom(2, 3);
+            for (const Vertex& at : places) {
+                gl.RasterPos4f(at.x, at.y, at.z, 1);
+                for (int letter = 0; letter < 2; ++letter) gl.Bitmap(8, 8, 1, 2, kMove, 0, kLetter.data());
+                gl.DrawPixels(3, 2, GL_RGBA, GL_UNSIGNED_BYTE, kImage.data());
+            }
+            pixels = window.read();
+        }
+        node_.make_current();
+        return pixels;
+    };
+    glstate::State state;  // the client's
+    state.matrix.projection = kCamera;
+    state.window.viewport = {0, 0, kWidth, kHeight};
+    const auto add_label = [&](Batch& batch, const Vertex& at) {
+        const auto clip =
+            glstate::project(glstate::Projection{.clip_from_object = glstate::multiply(kCamera, kModelview)}, at.x,
+                             at.y, at.z, 1)
+                .clip;
+        auto position = glstate::window_position(state, clip);
+        batch.set<el::raster_position_valid>(glstate::in_view_volume(state, clip))
+            .set<el::raster_clip>(glstate::raster_clip(state, clip));
+        const auto draw = [&](auto&& pack_image) {
+            batch.set<el::raster_position>(position);
+            batch.block((1u << kSlots) - 1, pack_image);
+            position[0] += kMove;
+        };
+        for (int letter = 0; letter < 2; ++letter)
+            draw([&](auto& b) { pack::Bitmap(b, 8, 8, 1, 2, 0, 0, std::as_bytes(std::span(kLetter))); });
+        draw([&](auto& b) { pack::DrawPixels(b, 3, 2, GL_RGBA, GL_UNSIGNED_BYTE, std::as_bytes(std::span(kImage))); });
+    };
+    const auto draw_labels = [&] {
+        Batch batch;
+        batch.set<el::projection>(kCamera).set<el::modelview>(kModelview).set<el::pixel_zoom>({2, 3});
+        batch.block((1u << kSlots) - 1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT); });
+        for (const Vertex& at : places) add_label(batch, at);
+        session_->expect_run(batch);
+    };
+    draw_labels();
+    const Pixels own = wanted(kCamera);
+    for (const std::uint32_t slot : {0u, 1u}) {
+        const Pixels there = wanted(seen(slot, kCamera));
+        EXPECT_EQ(count_different(there, session_->read(slot, kPart)), 0u) << "slot " << slot;
+        EXPECT_GT(count_different(there, own), 300u) << "it tells them apart";
+    }
+    place({}, {2 * kWidth, 0, kWidth, kHeight});
+    draw_labels();
+    EXPECT_EQ(count_different(own, session_->read(2, kPart)), 0u) << "the program's own picture";
+}
 
 TEST_F(TilesThatLookElsewhere, FixedFunctionIsSeenThroughThem) {
     Batch batch;

@@ -122,13 +122,16 @@ TEST_F(RasterTest, LitColorIsMesas) {
         const float position[4] = {number(-3, 3), number(-3, 3), number(1, 5), positional ? 1.0f : 0.0f};
         const float diffuse[4] = {number(0, 1), number(0, 1), number(0, 1), 0.7f}, specular[4] = {0.5f, 0.6f, 0.7f, 1},
                     shininess = 12;
-        const float x = number(-1, 1), y = number(-1, 1);
+        const float x = number(-1, 1), y = number(-1, 1), red = number(0, 1), green = number(0, 1);
+        const bool tracked = i % 3 == 0;  // materials follow the colour
         both([&](const auto& g) {
             g.Enable(GL_LIGHTING), g.Enable(GL_LIGHT0);
             g.Lightfv(GL_LIGHT0, GL_POSITION, position);
             g.Materialfv(GL_FRONT, GL_DIFFUSE, diffuse), g.Materialfv(GL_FRONT, GL_SPECULAR, specular),
                 g.Materialfv(GL_FRONT, GL_SHININESS, &shininess);
             g.Normal3f(x, y, 0.8f);
+            if (tracked) g.Enable(GL_COLOR_MATERIAL), g.Color4f(red, green, 0.3f, 0.6f);
+            else g.Disable(GL_COLOR_MATERIAL);
         });
         random_position();
         expect_same_place();

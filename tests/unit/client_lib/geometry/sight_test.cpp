@@ -71,6 +71,25 @@ TEST_F(SightTest, ABoxIsSeenByWhoeverLooksThere) {
     EXPECT_EQ(seen_by(box_at(0, 0, 0, 9)), (Nodes{0, 1, 2, 3, 4})) << "around the eye";
 }
 
+TEST_F(SightTest, AnImageIsSeenByWhoeverSeesItsPlace) {
+    const auto seen = [&](float x, float y, float z, const std::optional<PixelRect>& window) {
+        sight_.aim(own_, layout_.views);
+        const glstate::Vec4 clip = glstate::project(own_, x, y, z, 1).clip;
+        return nodes_of(layout_, sight_.of_image(Drawn::image(own_, clip, {-2, -2, 10, 10}, window)));
+    };
+    EXPECT_EQ(seen(0, 0, -5, PixelRect{48, 48, 60, 60}), (Nodes{0, 4})) << "ahead";
+    EXPECT_EQ(seen(5, 0, 0, std::nullopt), (Nodes{1})) << "to the right, where the program's picture has nothing";
+    EXPECT_EQ(seen(0.5f, 0, 5, std::nullopt), (Nodes{2})) << "behind";
+    EXPECT_EQ(seen(-5, 0, 4.9f, std::nullopt), (Nodes{2, 3})) << "over the edge between two";
+    EXPECT_EQ(seen(0, 9, 0, std::nullopt), (Nodes{})) << "above all of them";
+    glstate::Projection flat = own_;
+    flat.camera = flat.clip_from_object = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    sight_.aim(flat, layout_.views);
+    EXPECT_EQ(nodes_of(layout_, sight_.of_image(Drawn::image(flat, {0, 0, 0, 1}, {}, PixelRect{48, 48, 60, 60}))),
+              (Nodes{0, 1, 2, 3, 4}))
+        << "drawn by no camera: on each of them";
+}
+
 TEST_F(SightTest, WithoutViewsItIsTheProjectionsOwn) {
     sight_.aim(own_, {});
     const Reach reach = sight_.of(box_at(5, 0, 0));
