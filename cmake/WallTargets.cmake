@@ -23,9 +23,14 @@ find_package(Threads REQUIRED)
 add_compile_definitions(BOOST_ASIO_NO_DEPRECATED BOOST_ASIO_SEPARATE_COMPILATION BOOST_BEAST_SEPARATE_COMPILATION)
 
 option(WALLGL_PRECOMPILE "Parse heavy headers once (cmake/precompiled)" ON)
+option(WALLGL_UNITY "Compile several sources of a target at once, so that what all include is parsed once" OFF)
 set(WALLGL_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=")
 option(WALLGL_WERROR "Warnings are errors (the presets say so); off for compilers that nobody has tried" OFF)
 set(WALL_GEN_ROOT "${CMAKE_BINARY_DIR}/generated")
+
+# A change compiles its whole batch, and a header that all include an eighth as often: eight is where both are bearable.
+set(CMAKE_UNITY_BUILD ${WALLGL_UNITY})
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
 
 # Float results must equal those of Mesa's own C code, so no contraction into fused operations.
 # GCC's SLP vectorizer merges the packer's pointer updates into one store that stalls (docs/benchmarks.md).
@@ -42,6 +47,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 gives these two falsely for a moved std::string and for the frames of Asio's coroutines; the others depend on
   # what its optimizer has inlined, also into headers that are not ours: they are said, and no errors.
   list(APPEND WALL_COMPILE_OPTIONS -Wno-array-bounds -Wno-mismatched-new-delete)
+  if(WALLGL_UNITY)
+    # A coroutine's frame may hold what only its source names; that this source is included says nothing.
+    list(APPEND WALL_COMPILE_OPTIONS -Wno-subobject-linkage)
+  endif()
   foreach(guess dangling-pointer free-nonheap-object maybe-uninitialized restrict stringop-overflow stringop-overread
                 use-after-free)
     list(APPEND WALL_COMPILE_OPTIONS -Wno-error=${guess})
@@ -111,13 +120,22 @@ function(wall_program name)
   target_link_libraries(${name} PRIVATE ${ARG_LINK} Threads::Threads)
 endfunction()
 
-# wall_test(name SOURCES... [LINK libs...] [LABELS labels...]): a GoogleTest program, registered with CTest.
+# wall_alone(SOURCES...): not in one batch with others, because they have words of their own for the same thing.
+function(wall_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
+# wall_test(name [BATCHED] SOURCES... [LINK libs...] [LABELS labels...]): a GoogleTest program, registered with CTest.
+# Its sources are compiled each alone, since tests name what they need as is shortest; BATCHED: as those of libraries.
 function(wall_test name)
-  cmake_parse_arguments(ARG "" "" "LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "BATCHED" "" "LINK;LABELS" ${ARGN})
   find_package(GTest REQUIRED)
   wall_program(${name} ${ARG_UNPARSED_ARGUMENTS} LINK ${ARG_LINK} GTest::gtest GTest::gmock GTest::gtest_main)
   wall_precompile(${name} cmake/precompiled/test.h)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  if(NOT ARG_BATCHED)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+  endif()
   add_test(NAME ${name} COMMAND ${name})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)

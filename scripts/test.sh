@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs every test: scripts/test.sh [STAGE...], stages as listed below.
-# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Six run only when they are named:
+# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Seven run only when they are named:
 # golden-all and conformance-all, of which the usual run takes samples (more than ten minutes, hours); faults and soak,
 # 300 faults on a wall of machines and an hour of them; packages, which builds the Debian packages and runs a wall of
-# machines that have them; and fresh, which does everything once more on a clean Debian 12 (scripts/fresh.sh).
+# machines that have them; alone, which compiles each source by itself, so that a missing include fails; and fresh,
+# which does everything once more on a clean Debian 12 (scripts/fresh.sh).
 set -uo pipefail
 cd "$(dirname "$0")/.."
 readonly all_stages=(release golden conformance asan tsan fuzz)
-readonly on_request=(golden-all conformance-all faults soak packages fresh)
+readonly on_request=(golden-all conformance-all faults soak packages alone fresh)
 readonly summaries="build/test-summaries"
 readonly tsan_targets=(walld tileserver wallctl control_plane_test)
 begin=$SECONDS
@@ -128,6 +129,11 @@ stage_packages() {
   scripts/packages.sh || { failed+=(packages); return; }
   say "machines on which they are installed, upgraded and purged"
   /usr/bin/python3 tests/packages/packages_test.py -v || failed+=(packages)
+}
+
+stage_alone() {
+  say "building each source by itself (debug)"
+  build debug || failed+=(alone)
 }
 
 stage_fresh() {

@@ -11,8 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +19,7 @@
 
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
+#include "common/net/as_tuple.h"
 
 extern "C" {  // which glibc 2.36 forgets there
 #include <sys/pidfd.h>
@@ -29,7 +28,6 @@ extern "C" {  // which glibc 2.36 forgets there
 namespace wall::tileserver {
 namespace {
 
-constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
 constexpr int kExitNotStarted = 127;  // as shells have it; an upgrade may just replace the program
 
 Error system_error(const char* what) { return {std::string(what) + ": " + std::strerror(errno)}; }
@@ -161,7 +159,7 @@ Result<void> GpuProcesses::start(Gpu& gpu) {
 asio::awaitable<void> GpuProcesses::keep(Gpu& gpu) {
     while (!ended_) {
         if (const auto started = start(gpu); started) {
-            co_await gpu.process.async_wait(asio::posix::stream_descriptor::wait_read, kWaitable);
+            co_await gpu.process.async_wait(asio::posix::stream_descriptor::wait_read, net::kTuple);
             int status = 0;
             ::waitpid(gpu.pid, &status, 0);
             gpu.process.close();
@@ -172,7 +170,7 @@ asio::awaitable<void> GpuProcesses::keep(Gpu& gpu) {
         }
         if (ended_) break;
         gpu.pause.expires_after(limits_.pause);
-        co_await gpu.pause.async_wait(kWaitable);
+        co_await gpu.pause.async_wait(net::kTuple);
     }
 }
 
@@ -188,7 +186,7 @@ void GpuProcesses::has_ended(Gpu& gpu, int status) {
 
 asio::awaitable<void> GpuProcesses::hear(Gpu& gpu) {
     for (;;) {
-        co_await gpu.signs.async_wait(asio::local::datagram_protocol::socket::wait_read, kWaitable);
+        co_await gpu.signs.async_wait(asio::local::datagram_protocol::socket::wait_read, net::kTuple);
         if (ended_) co_return;
         const auto message = receive(gpu.signs.native_handle());
         if (message.empty()) continue;
@@ -206,7 +204,7 @@ void GpuProcesses::tell_ready() {
 asio::awaitable<void> GpuProcesses::watch() {
     while (!ended_) {
         watch_timer_.expires_after(std::min(limits_.silence, limits_.start) / 4);
-        co_await watch_timer_.async_wait(kWaitable);
+        co_await watch_timer_.async_wait(net::kTuple);
         for (auto& gpu : gpus_) {
             if (gpu.pid == 0 || Clock::now() - gpu.last_sign < (gpu.ready ? limits_.silence : limits_.start)) continue;
             log::error("gpu_silent gpu={} pid={}", log::quoted(gpu.name), gpu.pid);
@@ -223,7 +221,7 @@ asio::awaitable<void> GpuProcesses::feed_systemd() {
     while (!ended_) {
         if (wanted) sd_notify(0, "WATCHDOG=1");
         systemd_timer_.expires_after(wanted ? std::chrono::microseconds(limit / 2) : std::chrono::hours(1));
-        co_await systemd_timer_.async_wait(kWaitable);
+        co_await systemd_timer_.async_wait(net::kTuple);
     }
 }
 

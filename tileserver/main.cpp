@@ -5,10 +5,8 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -18,6 +16,7 @@
 
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
+#include "common/net/as_tuple.h"
 #include "common/net/sockets.h"
 #include "tileserver/gpu/gpu_devices.h"
 #include "tileserver/gpu/memory.h"
@@ -43,7 +42,7 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer&
     while (!stopping) {
         if (wanted && Clock::now() - server.last_sign_of_life() < kRenderStall) sd_notify(0, "WATCHDOG=1");
         timer.expires_after(wanted ? std::chrono::microseconds(limit / 2) : std::chrono::hours(1));
-        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+        co_await timer.async_wait(net::kTuple);
     }
 }
 

@@ -5,10 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +16,7 @@
 #include "common/config/load_config.h"
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
+#include "common/net/as_tuple.h"
 #include "common/net/sockets.h"
 #include "common/tls/identity.h"
 #include "walld/control/control_server.h"
@@ -57,7 +56,7 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const bool& stopp
     while (!stopping) {
         if (interval) notify_alive();
         timer.expires_after(interval.value_or(std::chrono::hours(1)));
-        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+        co_await timer.async_wait(net::kTuple);
     }
 }
 
@@ -89,7 +88,7 @@ std::string status_of(const ControlServer& control) { return "wall " + control.w
 /// SIGHUP does what `wallctl reload` does.
 asio::awaitable<void> reload_on(asio::signal_set& signals, ControlServer& control, const bool& stopping) {
     while (!stopping) {
-        const auto [error, signal] = co_await signals.async_wait(asio::as_tuple(asio::use_awaitable));
+        const auto [error, signal] = co_await signals.async_wait(net::kTuple);
         if (error) continue;
         notify_reloading();
         if (const auto done = control.description().reload(); done)

@@ -4,14 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <chrono>
 #include <cstring>
 #include <utility>
 
 #include "common/daemon/keep_running.h"
+#include "common/net/as_tuple.h"
 #include "common/wire/limits.h"
 #include "gen/glapi/wire.gen.h"
 #include "tileserver/io/frame_source.h"
@@ -144,7 +143,7 @@ asio::awaitable<void> CountingWall::ping() {
         for (const Node& node : nodes_)
             if (node.link && node.link->is_open()) node.link->send(envelope);
         timer.expires_after(kPingInterval);
-        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+        co_await timer.async_wait(net::kTuple);
     }
 }
 

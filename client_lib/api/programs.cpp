@@ -39,13 +39,6 @@ const char* lacking_stage(const Program& program) {
 /// With the terminating zero; 0 for nothing.
 GLint text_length(const std::string& text) { return text.empty() ? 0 : static_cast<GLint>(text.size() + 1); }
 
-template <class Items, class NameOf>
-GLint longest_name(const Items& items, NameOf&& name_of) {
-    std::size_t longest = 0;
-    for (const auto& item : items) longest = std::max(longest, name_of(item).size() + 1);
-    return static_cast<GLint>(longest);
-}
-
 GLint active_value(const Program& program, GLenum pname) {
     const Executable* executable = active(program);
     if (!executable) return 0;

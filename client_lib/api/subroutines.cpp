@@ -29,13 +29,6 @@ bool with_stage(Context& c, GLuint name, GLenum stage, Use&& use) {
     return true;
 }
 
-template <class Items, class NameOf>
-GLint longest_name(const Items& items, NameOf&& name_of) {
-    std::size_t longest = 0;
-    for (const auto& item : items) longest = std::max(longest, name_of(item).size() + 1);
-    return static_cast<GLint>(longest);
-}
-
 std::string full_name(const glapi::SubroutineUniform& uniform) {
     return uniform.array ? uniform.name + "[0]" : uniform.name;
 }

@@ -12,12 +12,6 @@
 namespace wall::client {
 namespace {
 
-void forget(Context& c, ClientName id) {
-    c.forget_object(id);
-    std::lock_guard lock(c.share().mutex);
-    c.share().by_id.erase(id);
-}
-
 /// Its origin has one view less, and may have been waiting for that.
 void forget_view(Context& c, const Texture& view) {
     const auto& origin = view.view.origin;
@@ -26,6 +20,12 @@ void forget_view(Context& c, const Texture& view) {
 }
 
 }  // namespace
+
+void forget(Context& c, ClientName id) {
+    c.forget_object(id);
+    std::lock_guard lock(c.share().mutex);
+    c.share().by_id.erase(id);
+}
 
 void forget_ranges(Context& c, VertexInput& input) {
     for (const auto& pieces : input.take_pieces()) forget(c, pieces->id);

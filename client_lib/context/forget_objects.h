@@ -13,6 +13,8 @@
 
 namespace wall::client {
 
+/// Whatever has this name.
+void forget(Context& c, ClientName id);
 /// What is known of an input's ranges.
 void forget_ranges(Context& c, VertexInput& input);
 void forget_inputs(Context& c, const std::vector<std::shared_ptr<VertexInput>>& inputs);

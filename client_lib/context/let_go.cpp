@@ -4,17 +4,12 @@
 #include <utility>
 #include <vector>
 
+#include "client_lib/context/forget_objects.h"
 #include "client_lib/context/memory_use.h"
 #include "client_lib/context/program_use.h"
 
 namespace wall::client {
 namespace {
-
-void forget(Context& c, ClientName id) {
-    c.forget_object(id);
-    std::lock_guard lock(c.share().mutex);
-    c.share().by_id.erase(id);
-}
 
 void forget_active(Context& c, FeedbackObject& object) {
     const auto active = std::exchange(object.active, nullptr);

@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "client_lib/link/node_greeting.h"
+#include "client_lib/link/remaining_time.h"
 #include "client_lib/process/log.h"
 #include "client_lib/process/process.h"
 #include "client_lib/process/stats.h"
@@ -33,11 +34,6 @@ constexpr milliseconds kTryAgain{200};   // a lost link, over which the wall may
 constexpr std::size_t kLengthBytes = 4;  // in front of every envelope, little endian
 constexpr std::size_t kReadChunk = 16 << 10;
 constexpr std::size_t kMaxOffered = 64;  // placements of a surface that does not draw; only the newest ones matter
-
-int remaining_ms(Clock::time_point deadline) {
-    const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now()).count();
-    return left > 0 ? static_cast<int>(left) : 0;
-}
 
 void append_framed(std::string& out, const std::string& envelope) {
     const auto size = static_cast<std::uint32_t>(envelope.size());

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "client_lib/link/remaining_time.h"
 #include "common/base/address.h"
 #include "common/base/connect_within.h"
 #include "common/base/descriptor_message.h"
@@ -25,11 +26,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostAnswer = 4096;  // bytes of a reason
-
-int remaining_ms(Clock::time_point deadline) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    return left > 0 ? static_cast<int>(left) : 0;
-}
 
 bool poll_for(int fd, short events, Clock::time_point deadline) {
     pollfd p{fd, events, 0};

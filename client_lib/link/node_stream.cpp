@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxQueuedBytes = 64u << 20;  // of one node: about two frames of the heaviest programs
 constexpr int kStallLimitMs = 5000;                 // a node that takes nothing for so long is given up
-constexpr std::size_t kReadChunk = 64 << 10;
+constexpr std::size_t kInboxChunk = 64 << 10;
 constexpr std::uint64_t kReceiptFrames = 64;                       // that have come since the last receipt
 constexpr std::size_t kReceiptBytes = 1 << 20;                     // or bytes of them
 constexpr std::size_t kMostSpare = 4;                              // buffers that wait for another batch
@@ -356,7 +356,7 @@ void NodeStream::on_writable() {
 
 void NodeStream::on_readable() {
     for (;;) {
-        if (inbox_.size() - inbox_used_ < kReadChunk) inbox_.resize(std::max(inbox_.size() * 2, kReadChunk * 2));
+        if (inbox_.size() - inbox_used_ < kInboxChunk) inbox_.resize(std::max(inbox_.size() * 2, kInboxChunk * 2));
         const ssize_t n = ::recv(fd_.get(), inbox_.data() + inbox_used_, inbox_.size() - inbox_used_, MSG_DONTWAIT);
         if (n == 0) return lost("node closed the stream");
         if (n < 0) {

@@ -12,7 +12,7 @@
 namespace wall::client {
 namespace {
 
-constexpr std::array<const char*, static_cast<std::size_t>(NodeCounter::kCount)> kNames{
+constexpr std::array<const char*, static_cast<std::size_t>(NodeCounter::kCount)> kCounterNames{
     "state_bytes", "object_bytes", "geometry_bytes", "blocks", "batches", "link_bytes"};
 
 constexpr int kWriteLimitMs = 500;  // at the end of the process
@@ -29,8 +29,8 @@ std::string quoted(std::string_view text) {
 template <class Value>
 std::string figures_json(Value&& value) {
     std::string out = "{";
-    for (std::size_t i = 0; i < kNames.size(); ++i)
-        out += (i ? ", " : "") + quoted(kNames[i]) + ": " + std::to_string(value(i));
+    for (std::size_t i = 0; i < kCounterNames.size(); ++i)
+        out += (i ? ", " : "") + quoted(kCounterNames[i]) + ": " + std::to_string(value(i));
     return out + "}";
 }
 

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "client_lib/vendor/x_messages.h"
+#include "client_lib/vendor/x_reply.h"
 
 namespace wall::client::vendor {
 namespace {
@@ -33,11 +34,6 @@ extern "C" int wallgl_display_closes(Display* display, XExtCodes*) {
     found->second->close();
     all.by_handle.erase(found);
     return 0;
-}
-
-template <class T>
-std::unique_ptr<T, void (*)(void*)> owned(T* reply) {
-    return {reply, &::free};
 }
 
 std::string text_property(xcb_connection_t* connection, xcb_window_t window, xcb_atom_t name) {

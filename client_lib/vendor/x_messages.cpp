@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "client_lib/process/log.h"
+#include "client_lib/vendor/x_reply.h"
 #include "common/base/quoted.h"
 
 namespace wall::client::vendor {
@@ -15,11 +16,6 @@ namespace {
 
 constexpr std::uint32_t kMaxProtocols = 64;
 constexpr int kMaxDepth = 32;  // of windows in windows
-
-template <class T>
-std::unique_ptr<T, void (*)(void*)> owned(T* reply) {
-    return {reply, &::free};
-}
 
 /// Answers of XCB carry errors; none reaches the program's error handler.
 class Server {

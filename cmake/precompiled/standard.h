@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What most files include of the standard library, parsed once. Every file still includes what it uses: without
-// precompiled headers (WALLGL_PRECOMPILE=OFF, as the sanitizer presets build) nothing is here by itself.
+// What most files include of the standard library, parsed once. Every file still includes what it uses: in the debug
+// preset, without precompiled headers and batches, nothing is here by itself.
 #pragma once
 
 #include <algorithm>

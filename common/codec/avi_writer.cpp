@@ -15,30 +15,30 @@ constexpr std::uint32_t kHasIndex = 0x10, kKeyFrame = 0x10, kNoKeyFrame = 0x8000
 constexpr std::string_view kFrameId = "00dc", kIndexId = "ix00";
 
 /// Little-endian bytes in a row.
-class Bytes {
+class LittleEndian {
 public:
-    Bytes& text(std::string_view text) {
+    LittleEndian& text(std::string_view text) {
         for (const char c : text) out_.push_back(static_cast<std::byte>(c));
         return *this;
     }
     template <class Value>
-    Bytes& number(Value value) {
+    LittleEndian& number(Value value) {
         for (std::size_t i = 0; i < sizeof(Value); ++i)
             out_.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> (8 * i)));
         return *this;
     }
-    Bytes& u16(std::uint64_t value) { return number(static_cast<std::uint16_t>(value)); }
-    Bytes& u32(std::uint64_t value) { return number(static_cast<std::uint32_t>(value)); }
-    Bytes& zeros(std::size_t count) {
+    LittleEndian& u16(std::uint64_t value) { return number(static_cast<std::uint16_t>(value)); }
+    LittleEndian& u32(std::uint64_t value) { return number(static_cast<std::uint32_t>(value)); }
+    LittleEndian& zeros(std::size_t count) {
         out_.resize(out_.size() + count);
         return *this;
     }
-    Bytes& bytes(std::span<const std::byte> bytes) {
+    LittleEndian& bytes(std::span<const std::byte> bytes) {
         out_.insert(out_.end(), bytes.begin(), bytes.end());
         return *this;
     }
     /// A chunk, padded to an even size.
-    Bytes& chunk(std::string_view id, const Bytes& data) {
+    LittleEndian& chunk(std::string_view id, const LittleEndian& data) {
         return text(id).u32(data.out_.size()).bytes(data.out_).zeros(data.out_.size() % 2);
     }
     std::size_t size() const { return out_.size(); }
@@ -48,9 +48,9 @@ private:
     std::vector<std::byte> out_;
 };
 
-Bytes main_header(const AviFormat& format) {
+LittleEndian main_header(const AviFormat& format) {
     const std::uint64_t microseconds = std::uint64_t{1000000} * format.scale / format.rate;
-    Bytes out;
+    LittleEndian out;
     out.u32(microseconds)
         .u32(0)
         .u32(0)
@@ -65,8 +65,8 @@ Bytes main_header(const AviFormat& format) {
     return out;
 }
 
-Bytes stream_header(const AviFormat& format) {
-    Bytes out;
+LittleEndian stream_header(const AviFormat& format) {
+    LittleEndian out;
     out.text("vids")
         .text({format.four_cc.data(), 4})
         .u32(0)
@@ -81,9 +81,9 @@ Bytes stream_header(const AviFormat& format) {
     return out;
 }
 
-Bytes stream_format(const AviFormat& format) {
+LittleEndian stream_format(const AviFormat& format) {
     const std::uint64_t image = std::uint64_t{format.width} * format.height * ((format.bit_count + 7) / 8);
-    Bytes out;
+    LittleEndian out;
     out.u32(40 + format.extradata.size()).u32(format.width).u32(format.height).u16(1).u16(format.bit_count);
     out.text({format.four_cc.data(), 4}).u32(std::min<std::uint64_t>(image, ~0u)).zeros(16).bytes(format.extradata);
     return out;
@@ -119,7 +119,7 @@ Result<void> AviWriter::add(std::span<const std::byte> frame, bool key) {
         begin_segment();
     }
     entries_.push_back({static_cast<std::uint32_t>(at_ + 8 - movi_at_), static_cast<std::uint32_t>(frame.size()), key});
-    Bytes head;
+    LittleEndian head;
     head.text(kFrameId).u32(frame.size());
     write(head.span());
     write(frame);
@@ -160,15 +160,15 @@ void AviWriter::patch(std::uint64_t at, std::uint64_t value, unsigned bytes) {
 }
 
 void AviWriter::write_header() {
-    Bytes super_index;
+    LittleEndian super_index;
     super_index.u16(4).u16(0).u32(0).text(kFrameId).zeros(12).zeros(16 * kMaxSegments);
-    Bytes stream, headers, list, riff;
+    LittleEndian stream, headers, list, riff;
     stream.text("strl").chunk("strh", stream_header(format_)).chunk("strf", stream_format(format_));
     const std::size_t index_in_stream = stream.size();
     stream.chunk("indx", super_index);
     headers.text("hdrl").chunk("avih", main_header(format_));
     const std::size_t stream_in_headers = headers.size() + 8;
-    headers.chunk("LIST", stream).chunk("LIST", Bytes().text("odml").chunk("dmlh", Bytes().zeros(248)));
+    headers.chunk("LIST", stream).chunk("LIST", LittleEndian().text("odml").chunk("dmlh", LittleEndian().zeros(248)));
     riff.text("RIFF").u32(0).text("AVI ").chunk("LIST", headers);
     constexpr std::size_t kHeaders = 12 + 8;  // bytes before the header list's own
     main_frames_at_ = kHeaders + 4 + 8 + 16;
@@ -176,7 +176,7 @@ void AviWriter::write_header() {
     super_index_at_ = kHeaders + stream_in_headers + index_in_stream;
     total_frames_at_ = riff.size() - 248;
     write(riff.span());
-    Bytes movi;
+    LittleEndian movi;
     movi.text("LIST").u32(0).text("movi");
     movi_at_ = at_ + 8;
     write(movi.span());
@@ -184,17 +184,17 @@ void AviWriter::write_header() {
 
 void AviWriter::begin_segment() {
     riff_at_ = at_;
-    Bytes out;
+    LittleEndian out;
     out.text("RIFF").u32(0).text("AVIX").text("LIST").u32(0).text("movi");
     movi_at_ = at_ + 20;
     write(out.span());
 }
 
 void AviWriter::end_segment() {
-    Bytes index;
+    LittleEndian index;
     index.u16(2).u16(0x0100).u32(entries_.size()).text(kFrameId).number(movi_at_).u32(0);
     for (const Entry& entry : entries_) index.u32(entry.offset).u32(entry.bytes | (entry.key ? 0 : kNoKeyFrame));
-    Bytes chunk;
+    LittleEndian chunk;
     chunk.chunk(kIndexId, index);
     segments_.push_back({at_, static_cast<std::uint32_t>(chunk.size()), static_cast<std::uint32_t>(entries_.size())});
     write(chunk.span());
@@ -205,7 +205,7 @@ void AviWriter::end_segment() {
 }
 
 void AviWriter::write_old_index() {
-    Bytes index, chunk;
+    LittleEndian index, chunk;
     for (const Entry& entry : entries_)
         index.text(kFrameId).u32(entry.key ? kKeyFrame : 0).u32(entry.offset - 8).u32(entry.bytes);
     chunk.chunk("idx1", index);

@@ -9,9 +9,6 @@
 namespace wall::codec::huffyuv {
 namespace {
 
-constexpr std::size_t kGroup = 8;            ///< pixels without residual that are found together
-constexpr std::size_t kMostPixelBytes = 16;  ///< what a row may read past the packet's end before it is noticed
-
 /// Turns bits into residuals of four-byte pixels.
 class PixelReader {
 public:

@@ -10,9 +10,7 @@
 namespace wall::codec::huffyuv {
 namespace {
 
-constexpr unsigned kPutBits = 32;            ///< what WordBitWriter takes at once
-constexpr std::size_t kMostPixelBytes = 16;  ///< four codes of at most 31 bits
-constexpr std::size_t kGroup = 8;            ///< pixels that are looked at together: all zero is common
+constexpr unsigned kPutBits = 32;  ///< what WordBitWriter takes at once
 
 /// Codes packed for the inner loop: the value above 8 bits of length. Lengths over 24 do not fit.
 using PackedCodes = std::array<std::uint32_t, 256>;

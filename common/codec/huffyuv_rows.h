@@ -15,6 +15,9 @@
 
 namespace wall::codec::huffyuv {
 
+inline constexpr std::size_t kMostPixelBytes = 16;  ///< of a coded RGB pixel: four codes of at most 31 bits
+inline constexpr std::size_t kGroup = 8;  ///< pixels that are coded and found together: no residual in any is common
+
 inline std::uint32_t pixel_at(const std::byte* row, std::size_t i) {
     std::uint32_t pixel;
     std::memcpy(&pixel, row + 4 * i, sizeof pixel);

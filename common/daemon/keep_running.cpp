@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "common/daemon/keep_running.h"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <exception>
 #include <thread>
 #include <utility>
 
 #include "common/log/log.h"
+#include "common/net/as_tuple.h"
 #include "common/net/sockets.h"
 
 namespace wall::net {
 namespace {
 
-constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::chrono::seconds kListenAgain{1};  // while another process has the address
 
 /// Why the work has ended; GCC 12 has no co_await in a handler.
@@ -32,7 +30,7 @@ asio::awaitable<void> look_until_false(std::chrono::milliseconds interval, std::
     asio::steady_timer timer(co_await asio::this_coro::executor);
     do {
         timer.expires_after(interval);
-        co_await timer.async_wait(kTuple);
+        co_await timer.async_wait(net::kTuple);
     } while (look());
 }
 
@@ -44,7 +42,7 @@ asio::awaitable<void> run_for_ever(LastingTask task) {
         log::error("task_failed task={} error={} again_in_ms={}", log::quoted(task.name), log::quoted(why),
                    task.pause.count());
         timer.expires_after(task.pause);
-        co_await timer.async_wait(kTuple);
+        co_await timer.async_wait(net::kTuple);
     }
 }
 
@@ -63,7 +61,7 @@ asio::awaitable<void> accept_all(Listener& listener, std::function<void(StreamSo
             if (again) break;
             log::error("listener_failed error={}", log::quoted(again.error().message));
             asio::steady_timer pause(co_await asio::this_coro::executor, kListenAgain);
-            co_await pause.async_wait(kTuple);
+            co_await pause.async_wait(net::kTuple);
         }
         if (!stopping()) log::info("listening_again address={}", log::quoted(listener.address().text()));
     }

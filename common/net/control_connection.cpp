@@ -3,19 +3,17 @@
 
 #include <unistd.h>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 
 #include "common/base/trusted_server.h"
+#include "common/net/as_tuple.h"
 
 namespace wall::net {
 namespace {
 
-constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr auto kAcceptRetry = std::chrono::milliseconds(100);  // while descriptors are short
 
 /// The listener itself is well.
@@ -24,10 +22,6 @@ bool passes(const boost::system::error_code& error) {
     return error == errc::too_many_files_open || error == errc::too_many_files_open_in_system ||
            error == errc::connection_aborted || error == errc::no_buffer_space || error == errc::not_enough_memory ||
            error == errc::protocol_error || error == errc::interrupted;
-}
-
-asio::generic::stream_protocol protocol_of(const Address& address, int family) {
-    return {family, address.is_unix() ? 0 : IPPROTO_TCP};
 }
 
 }  // namespace

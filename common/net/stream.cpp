@@ -5,25 +5,23 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/error.hpp>
 #include <boost/asio/ssl/stream.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <cerrno>
 #include <list>
 #include <memory>
 
 #include "common/base/descriptor_message.h"
+#include "common/net/as_tuple.h"
 
 namespace wall::net {
 namespace {
 
 constexpr unsigned kStuckRetransmits = 2, kStuckMs = 700;
-constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 using Tls = asio::ssl::stream<StreamSocket&>;
 
 /// Closes the socket when the time is over, unless it goes first.
@@ -41,10 +39,6 @@ private:
     std::shared_ptr<bool> armed_ = std::make_shared<bool>(true);
     asio::steady_timer timer_;
 };
-
-asio::generic::stream_protocol protocol_of(const Address& address, int family) {
-    return {family, address.is_unix() ? 0 : IPPROTO_TCP};
-}
 
 /// Connects, and asks anew now and then while there is no answer, with each question on a socket of its own: whoever is
 /// reached first counts. TCP itself asks a second time after a second only, and again ever more rarely, so that a link

@@ -11,9 +11,9 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr std::int32_t kMaxExtent = 16384, kMaxLevel = 14;
+constexpr std::int32_t kMaxLevel = 14;
 
-bool sane(std::int32_t at) { return at >= 0 && at <= kMaxExtent; }
+bool sane(std::int32_t at) { return at >= 0 && at <= kMaxImageSide; }
 
 /// Of that target, by its own word; null: the session has none.
 Texture* find_texture(const SessionReplica& session, ClientName name, GLenum target) {

@@ -14,7 +14,7 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr std::int32_t kMaxTextureExtent = 16384 + 2;  // texels, with borders
+constexpr std::int32_t kMaxTextureExtent = kMaxImageSide + 2;  // texels, with borders
 constexpr std::int32_t kMaxTextureLevel = 16;
 constexpr std::uint32_t kMaxSamples = 64;
 

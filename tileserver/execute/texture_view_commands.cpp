@@ -10,7 +10,6 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr std::int32_t kMaxExtent = 16384;  // texels
 constexpr std::uint32_t kMaxLevels = 15, kMaxSamples = 64;
 
 /// Nothing: not the word of a target that has images.
@@ -22,7 +21,7 @@ std::optional<TextureTarget> stored_target(GLenum word) {
 
 bool sane_extent(const ImageExtent& extent) {
     return std::ranges::all_of(std::array{extent.width, extent.height, extent.depth},
-                               [](std::int32_t side) { return side >= 1 && side <= kMaxExtent; });
+                               [](std::int32_t side) { return side >= 1 && side <= kMaxImageSide; });
 }
 
 }  // namespace

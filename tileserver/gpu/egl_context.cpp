@@ -8,7 +8,7 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr std::array kContextAttributes = {
+constexpr std::array kEglContextAttributes = {
     EGL_CONTEXT_MAJOR_VERSION,
     4,
     EGL_CONTEXT_MINOR_VERSION,
@@ -20,10 +20,10 @@ constexpr std::array kContextAttributes = {
 
 /// With a notice when the GPU is reset (Driver::reset()); not every driver gives one.
 constexpr auto kResetAttributes = [] {
-    std::array<EGLint, kContextAttributes.size() + 2> wanted{};
-    std::ranges::copy(kContextAttributes, wanted.begin());
-    wanted[kContextAttributes.size() - 1] = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
-    wanted[kContextAttributes.size()] = EGL_LOSE_CONTEXT_ON_RESET;
+    std::array<EGLint, kEglContextAttributes.size() + 2> wanted{};
+    std::ranges::copy(kEglContextAttributes, wanted.begin());
+    wanted[kEglContextAttributes.size() - 1] = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
+    wanted[kEglContextAttributes.size()] = EGL_LOSE_CONTEXT_ON_RESET;
     wanted.back() = EGL_NONE;
     return wanted;
 }();
@@ -47,7 +47,7 @@ bool has_word(const char* list, std::string_view word) {
 
 EGLContext create_egl_context(EGLDisplay display) {
     if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return EGL_NO_CONTEXT;
-    for (const EGLint* attributes : {kResetAttributes.data(), kContextAttributes.data()}) {
+    for (const EGLint* attributes : {kResetAttributes.data(), kEglContextAttributes.data()}) {
         const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
         if (context != EGL_NO_CONTEXT) return context;
     }

@@ -20,7 +20,7 @@ struct OsMesa {
     OSMESAproc (*get_proc_address)(const char*) = nullptr;
 };
 
-constexpr std::array kContextAttributes = {
+constexpr std::array kMesaContextAttributes = {
     OSMESA_FORMAT,
     OSMESA_RGBA,
     OSMESA_DEPTH_BITS,
@@ -84,7 +84,7 @@ private:
 Result<std::unique_ptr<GlBackend>> open_osmesa_backend() {
     auto mesa = load_library();
     if (!mesa) return tl::unexpected(mesa.error());
-    const OSMesaContext context = mesa->create_context(kContextAttributes.data(), nullptr);
+    const OSMesaContext context = mesa->create_context(kMesaContextAttributes.data(), nullptr);
     if (context == nullptr) return fail("OSMesa offers no OpenGL 4.5 compatibility context");
     return std::make_unique<OsMesaBackend>(*mesa, context);
 }

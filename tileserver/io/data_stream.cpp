@@ -4,18 +4,17 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 
 #include "common/log/log.h"
 #include "common/log/refusals.h"
+#include "common/net/as_tuple.h"
 #include "common/tls/secret.h"
 #include "common/wire/limits.h"
 #include "gen/glapi/wire.gen.h"
@@ -26,7 +25,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint32_t kMaxHello = 4 << 10;  // bytes
 constexpr auto kGreetingLimit = 5s;           // for the hello to come
 constexpr const char* kNoHello = "no hello came";
@@ -149,7 +147,7 @@ asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId s
         if (std::chrono::steady_clock::now() > until || closing_ || is_gone(connection_.descriptor()))
             co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
-        co_await timer_.async_wait(kWaitable);
+        co_await timer_.async_wait(net::kTuple);
     }
 }
 
@@ -171,7 +169,7 @@ asio::awaitable<Result<void>> DataStream::take_batches() {
         co_await hold_to_bandwidth(bytes);
         while (!room_ && !closing_ && !next_) {
             timer_.expires_after(1s);
-            co_await timer_.async_wait(kWaitable);
+            co_await timer_.async_wait(net::kTuple);
         }
     }
     co_return Result<void>{};
@@ -187,7 +185,7 @@ asio::awaitable<void> DataStream::hold_to_bandwidth(std::size_t bytes) {
     read_until_ = std::max(read_until_, now) + std::chrono::duration_cast<std::chrono::nanoseconds>(takes);
     while (!closing_ && std::chrono::steady_clock::now() < read_until_ - kAhead) {
         timer_.expires_at(read_until_ - kAhead);
-        co_await timer_.async_wait(kWaitable);
+        co_await timer_.async_wait(net::kTuple);
     }
 }
 
@@ -284,7 +282,7 @@ asio::awaitable<Result<void>> DataStream::wait_for_connection() {
     const auto until = std::chrono::steady_clock::now() + kAwaited;
     while (!closing_ && (!next_ || writing_) && std::chrono::steady_clock::now() < until) {
         timer_.expires_at(until);
-        co_await timer_.async_wait(kWaitable);
+        co_await timer_.async_wait(net::kTuple);
     }
     if (closing_ || !next_ || writing_) co_return wall::fail(FrameSource::kClosed);
     connection_ = std::move(next_->stream);

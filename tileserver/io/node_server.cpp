@@ -4,11 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <cstring>
 #include <exception>
 #include <map>
@@ -16,6 +14,7 @@
 
 #include "common/log/log.h"
 #include "common/log/refusals.h"
+#include "common/net/as_tuple.h"
 #include "common/wire/limits.h"
 #include "common/wire/weights.h"
 #include "tileserver/io/caps_message.h"
@@ -29,7 +28,6 @@ using namespace std::chrono_literals;
 
 constexpr auto kRetryInterval = 250ms;
 constexpr auto kRefusedInterval = 2s;
-constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
 
 /// One that is not known is for both.
 geom::Eye eye_of(std::uint32_t word) {
@@ -249,7 +247,7 @@ void NodeServer::end_session(SessionId session) {
 asio::awaitable<void> NodeServer::watch_turns() {
     while (!stopping_) {
         turn_timer_.expires_after(turn_watch_.interval());
-        co_await turn_timer_.async_wait(kWaitable);
+        co_await turn_timer_.async_wait(net::kTuple);
         const auto turn = render_->running_turn();
         if (turn_watch_.overdue(turn, TurnWatch::Clock::now())) blame(*turn);
     }
@@ -292,7 +290,7 @@ asio::awaitable<void> NodeServer::keep_link() {
         if (stopping_) break;
         // What an operator has to mend is not tried four times a second.
         retry_.expires_after(std::exchange(refused_, false) ? kRefusedInterval : kRetryInterval);
-        co_await retry_.async_wait(kWaitable);
+        co_await retry_.async_wait(net::kTuple);
     }
 }
 
@@ -324,7 +322,7 @@ asio::awaitable<void> NodeServer::use_link(std::shared_ptr<net::ControlConnectio
 asio::awaitable<void> NodeServer::watch_walld() {
     while (!stopping_) {
         watch_timer_.expires_after(watch_.interval());
-        co_await watch_timer_.async_wait(kWaitable);
+        co_await watch_timer_.async_wait(net::kTuple);
         if (!link_) continue;
         if (link_->is_stuck()) {  // another one is there sooner than TCP asks again
             link_->close();

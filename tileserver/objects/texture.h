@@ -13,6 +13,8 @@
 
 namespace wall::tileserver {
 
+inline constexpr std::int32_t kMaxImageSide = 16384;  ///< texels of any image but for borders
+
 class Texture final : public ObjectOf<ObjectKind::texture> {
 public:
     /// With nothing in it.

@@ -23,6 +23,11 @@ struct Failure {
 template <class T>
 using Outcome = Expected<T, Failure>;
 
+/// What went wrong here, with the code for it.
+inline tl::unexpected<Failure> failed(std::string message) {
+    return tl::unexpected<Failure>({"failed", std::move(message)});
+}
+
 /// Where walld is, and as whom it is asked.
 struct Walld {
     std::string address;

@@ -5,17 +5,16 @@
 #include <systemd/sd-daemon.h>
 
 #include <CLI/CLI.hpp>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <filesystem>
 #include <iostream>
 
 #include "common/daemon/keep_running.h"
 #include "common/join/join.h"
 #include "common/log/log.h"
+#include "common/net/as_tuple.h"
 #include "common/net/sockets.h"
 #include "common/tls/identity.h"
 #include "tools/wallagent/agent.h"
@@ -86,7 +85,7 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const bool& stopp
     while (!stopping) {
         if (wanted) sd_notify(0, "WATCHDOG=1");
         timer.expires_after(wanted ? std::chrono::microseconds(limit / 2) : std::chrono::hours(1));
-        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+        co_await timer.async_wait(net::kTuple);
     }
 }
 

@@ -17,7 +17,7 @@ constexpr double kMatchesOfCell = 40;           // that a cell has on the averag
 constexpr std::size_t kLeastOfCell = 8;         // matches around a point, or it is not seen
 constexpr double kReach = 1.5;                  // cells, that a point is found from
 constexpr std::size_t kSample = 400;            // matches that a point is found from
-constexpr double kLargestError = 2;             // projector pixels, 95 %: beyond, it is no smooth screen
+constexpr double kMostRoughness = 2;            // projector pixels, 95 %: beyond, it is no smooth screen
 constexpr int kTerms = 6;                       // of a polynomial of two variables, of the second degree
 constexpr double kSlack = 2;                    // camera pixels that a match may always be off by
 const double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -242,7 +242,7 @@ Result<CurvedScreen> find_curved_screen(const CameraLens* lens, std::span<const 
     }
     std::ranges::sort(errors);
     out.error = errors[errors.size() * 95 / 100];
-    if (out.error > kLargestError)
+    if (out.error > kMostRoughness)
         return fail("the photographs fit no smooth screen: 95 % are off by up to " + std::to_string(out.error) +
                     " pixels of a projector (has the camera moved?)");
     return out;

@@ -9,17 +9,17 @@
 namespace wall::calibrate {
 namespace {
 
-constexpr std::size_t kSample = 4000;  // matches of a projector that are fitted
+constexpr std::size_t kFitted = 4000;  // matches of a projector that are fitted
 constexpr double kOutlier = 3;         // projector pixels
-constexpr double kLargestError = 2;    // projector pixels, 95 %: beyond, the screen is not flat
+constexpr double kMostBump = 2;        // projector pixels, 95 %: beyond, the screen is not flat
 constexpr double kStep = 0.05;         // of k1 and k2, in which the search begins
 
 /// Some of the matches, from all over the picture.
 std::vector<Match> sample_of(const std::vector<Match>& all) {
-    if (all.size() <= kSample) return all;
+    if (all.size() <= kFitted) return all;
     std::vector<Match> out;
     cv::RNG random(1);
-    for (std::size_t i = 0; i < kSample; ++i)
+    for (std::size_t i = 0; i < kFitted; ++i)
         out.push_back(all[static_cast<std::size_t>(random.uniform(0, static_cast<int>(all.size())))]);
     return out;
 }
@@ -115,7 +115,7 @@ Result<FlatScreen> find_flat_screen(const cv::Size& picture, std::span<const std
     }
     std::ranges::sort(off);
     out.error = off[off.size() * 95 / 100];
-    if (out.error > kLargestError)
+    if (out.error > kMostBump)
         return fail("the photographs fit no flat screen: 95 % are off by up to " + std::to_string(out.error) +
                     " pixels of a projector (has the camera moved, or is the screen curved?)");
     return out;

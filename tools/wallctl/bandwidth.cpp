@@ -26,7 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 namespace pack = glapi::pack;
 
-constexpr std::chrono::milliseconds kReach{2000}, kWelcome{10000};
+constexpr std::chrono::milliseconds kProbeReach{2000}, kWelcome{10000};
 constexpr std::chrono::milliseconds kSending{500};  // enough that a link's buffers are little of it
 constexpr std::chrono::seconds kLongest{20};        // for what was sent to arrive, over a slow link
 constexpr std::size_t kBuffer = std::size_t{1} << 20;
@@ -48,7 +48,8 @@ public:
         const auto to = resolve(*address);
         if (!to) return tl::unexpected(to.error());
         Probe probe(UniqueFd(::socket(to->family(), SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)));
-        if (const int error = connect_within(probe.fd_.get(), to->get(), to->length, Clock::now() + kReach); error != 0)
+        if (const int error = connect_within(probe.fd_.get(), to->get(), to->length, Clock::now() + kProbeReach);
+            error != 0)
             return fail(address_text + ": " + std::strerror(error));
         probe.wait_at_most(kLongest);
         if (auto sent = probe.send(wire::whole_frame(wire::FrameKind::hello, std::as_bytes(std::span(hello)))); !sent)
@@ -189,7 +190,7 @@ Result<void> measure_ways(const request::Walld& walld, const std::function<void(
     if (!address) return tl::unexpected(address.error());
     const auto token = request::read_token(walld.token_file);
     if (!token) return fail(token.error().message);
-    auto client = net::ControlClient::connect(*address, kReach);
+    auto client = net::ControlClient::connect(*address, kProbeReach);
     if (!client) return tl::unexpected(client.error());
     const auto welcome = come(*client, *token);
     if (!welcome) return tl::unexpected(welcome.error());

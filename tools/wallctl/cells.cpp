@@ -24,7 +24,10 @@ std::string text(const json& object, const char* key) {
     return found->is_string() ? printable(found->get<std::string>()) : found->dump();
 }
 
-bool is(const json& object, const char* key) { return object.value(key, false); }
+bool is(const json& object, const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_boolean() && found->get<bool>();
+}
 
 std::string place(const json& object) {
     const auto rect = object.value("rect", std::vector<int>(4));

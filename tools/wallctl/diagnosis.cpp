@@ -8,6 +8,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "tools/wallctl/cells.h"
+
 namespace wall::wallctl {
 namespace {
 
@@ -30,20 +32,10 @@ const json& list(const json& status, const char* name) {
     return found != status.end() && found->is_array() ? *found : none;
 }
 
-std::string text(const json& of, const char* name) {
-    const auto found = of.find(name);
-    return found != of.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
 std::uint64_t number(const json& of, const char* name) {
     const auto found = of.find(name);
     const bool counts = found != of.end() && found->is_number_integer() && *found >= 0;
     return counts ? found->get<std::uint64_t>() : 0;
-}
-
-bool is(const json& of, const char* name) {
-    const auto found = of.find(name);
-    return found != of.end() && found->is_boolean() && found->get<bool>();
 }
 
 /// Mesa's renderers without a GPU say so by these names.

@@ -30,6 +30,7 @@ using namespace wall;
 using namespace wall::wallctl;
 using nlohmann::json;
 using request::ask;
+using request::failed;
 
 constexpr const char* kNode = "node";
 constexpr const char* kSaid = "said";               // code of a failure of which the JSON has been printed
@@ -60,8 +61,6 @@ struct Options {
 using Action = std::function<Outcome<void>()>;
 
 std::string (*const kNoTable)(const json&) = nullptr;
-
-tl::unexpected<Failure> failed(std::string message) { return tl::unexpected<Failure>({"failed", std::move(message)}); }
 
 Outcome<void> print(const Options& options, const Outcome<Answer>& answer, std::string (*table)(const json&)) {
     if (!answer) return tl::unexpected(answer.error());

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tools/wallctl/record.h"
 
-#include <signal.h>
-
-#include <atomic>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -11,17 +8,16 @@
 #include "common/codec/avi.h"
 #include "common/codec/huffyuv.h"
 #include "tools/view/live_view.h"
+#include "tools/wallctl/interrupts.h"
 
 namespace wall::wallctl {
 namespace {
 
+using request::failed;
+
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kFirstPictures{5};
 constexpr const char* kCodec = "huffyuv-tiles";  // between walld and here
-
-std::atomic<bool> interrupted = false;
-
-tl::unexpected<Failure> failed(std::string message) { return tl::unexpected<Failure>({"failed", std::move(message)}); }
 
 /// The file and its encoder, made with the first frame.
 class Film {
@@ -100,11 +96,11 @@ Outcome<Answer> record(const Walld& walld, const Recording& recording) {
         entry, view::LiveView::AfterFailure::stay);
     if (!wall.wait_complete(kFirstPictures)) return failed("not every tile sent a picture within 5 s (wallctl tiles)");
     if (const auto first = picture_of(wall); !first) return tl::unexpected(first.error());
-    ::signal(SIGINT, [](int) { interrupted = true; });
+    watch_for_interrupts();
     Film film(recording);
     const auto frames = static_cast<std::uint64_t>(std::max(1.0, recording.seconds * recording.fps + 0.5));
     const auto begin = Clock::now();
-    while (film.frames() < frames && !interrupted) {
+    while (film.frames() < frames && !interrupted()) {
         const auto picture = picture_of(wall);
         if (!picture) {
             static_cast<void>(film.finish());

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tools/wallctl/record_commands.h"
 
-#include <signal.h>
-
-#include <atomic>
 #include <chrono>
 #include <iomanip>
 #include <iostream>
@@ -13,6 +10,7 @@
 #include "common/recording/stream_watch.h"
 #include "common/recording/writer.h"
 #include "gen/glapi/wire.gen.h"
+#include "tools/wallctl/interrupts.h"
 #include "tools/wallctl/recording_node.h"
 
 namespace wall::wallctl {
@@ -20,15 +18,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using request::Answer;
+using request::failed;
 using request::Failure;
 using request::Outcome;
 
 constexpr std::chrono::milliseconds kAnswerLimit{10'000}, kTurn{20};
 constexpr std::chrono::seconds kFirstCommands{10};  // a program comes to a node between two frames
-
-std::atomic<bool> interrupted = false;
-
-tl::unexpected<Failure> failed(std::string message) { return tl::unexpected<Failure>({"failed", std::move(message)}); }
 
 /// A program's stream on its way into the file.
 class Tape {
@@ -151,15 +146,14 @@ Outcome<Answer> record_commands(const request::Walld& walld, const CommandRecord
     if (!ticket) return tl::unexpected(ticket.error());
     node->expect(std::move(*ticket));
     if (auto begun = tape.begin(*program); !begun) return failed(begun.error().message);
-    ::signal(SIGINT, [](int) { interrupted = true; });
-    ::signal(SIGTERM, [](int) { interrupted = true; });
+    watch_for_interrupts();
     const auto begin = Clock::now();
     auto next_word = begin + std::chrono::seconds(1);
     std::string ended = "time";
     Result<void> done;
     while (!tape.is_over()) {
         if (done = node->serve(kTurn); !done) break;
-        if (interrupted) ended = "interrupted";
+        if (interrupted()) ended = "interrupted";
         else if (const auto why = ended_by(*link)) ended = *why;
         if (ended != "time") break;
         if (!tape.has_begun() && Clock::now() > begin + kFirstCommands)

@@ -5,13 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
 
 #include "common/daemon/keep_running.h"
 #include "common/json/parse_json.h"
 #include "common/log/log.h"
 #include "common/log/refusals.h"
+#include "common/net/as_tuple.h"
 #include "common/net/base64.h"
 #include "walld/control/arguments.h"
 #include "walld/control/random_bytes.h"
@@ -22,7 +21,6 @@
 namespace wall::walld {
 namespace {
 
-constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr const char* kWatchVerb = "watch";    // the one verb with many answers
 constexpr const char* kRecordVerb = "record";  // what it began lasts as long as the connection
 constexpr std::chrono::seconds kLookAtConnection{1};
@@ -627,7 +625,7 @@ Clock::time_point ControlServer::next_deadline() const {
 asio::awaitable<void> ControlServer::run_deadlines() {
     while (!stopping_) {
         deadline_timer_.expires_at(next_deadline());
-        co_await deadline_timer_.async_wait(kTuple);
+        co_await deadline_timer_.async_wait(net::kTuple);
         wall_.tick(Clock::now());
         streams_.tick(Clock::now());
         changed_.notify();
@@ -637,7 +635,7 @@ asio::awaitable<void> ControlServer::run_deadlines() {
 asio::awaitable<void> ControlServer::watch_peers() {
     while (!stopping_) {
         process_timer_.expires_after(kPidCheck);
-        co_await process_timer_.async_wait(kTuple);
+        co_await process_timer_.async_wait(net::kTuple);
         watch_programs();
         watch_nodes();
     }

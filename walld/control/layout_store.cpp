@@ -11,21 +11,13 @@
 
 #include "common/base/whole_file.h"
 #include "common/json/parse_json.h"
+#include "walld/control/names.h"
 
 namespace wall::walld {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* kEnding = ".json";
-constexpr std::size_t kMaxName = 64;
-
-bool name_ok(const std::string& name) {
-    const auto good = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
-               c == '.';
-    };
-    return !name.empty() && name.size() <= kMaxName && name[0] != '.' && std::ranges::all_of(name, good);
-}
 
 tl::unexpected<Refusal> failed(const fs::path& path, const std::string& what) {
     return refuse(RefusalKind::failed, path.string() + ": " + what);
@@ -38,10 +30,8 @@ Outcome<fs::path> LayoutStore::path_of(const std::string& name) const {
         return refuse(
             RefusalKind::unavailable,
             "layouts cannot be kept: walld has no state directory ('state_directory' in [wall] of wall.toml)");
-    if (name_ok(name)) return folder_ / (name + kEnding);
-    return refuse(RefusalKind::invalid,
-                  "a layout's name has 1 to " + std::to_string(kMaxName) +
-                      " letters, digits, dots, dashes and underscores, and does not begin with a dot");
+    if (may_name_file(name)) return folder_ / (name + kEnding);
+    return refuse(RefusalKind::invalid, "a layout's name has " + file_name_rule());
 }
 
 Outcome<void> LayoutStore::save(const std::string& name, const Layout& layout) const {
@@ -81,7 +71,7 @@ Outcome<std::vector<std::string>> LayoutStore::list() const {
     std::error_code error;
     for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
         const auto name = at->path().stem().string();
-        if (at->path().extension() == kEnding && name_ok(name)) names.push_back(name);
+        if (at->path().extension() == kEnding && may_name_file(name)) names.push_back(name);
     }
     if (error && error != std::errc::no_such_file_or_directory) return failed(folder_, error.message());
     std::ranges::sort(names);

@@ -10,14 +10,14 @@
 #include "common/base/whole_file.h"
 #include "common/json/parse_json.h"
 #include "common/tls/secret.h"
+#include "walld/control/names.h"
 
 namespace wall::walld {
 namespace {
 
 using nlohmann::json;
 constexpr const char* kFile = "machines.json";
-constexpr std::size_t kMaxName = 64;
-constexpr std::array kKinds{Machine::Kind::node, Machine::Kind::client};
+constexpr std::array kMachineKinds{Machine::Kind::node, Machine::Kind::client};
 constexpr std::array kRoles{Role::none, Role::viewer, Role::user, Role::operator_};
 
 /// What `choices` calls `name`; an error names the member.
@@ -36,7 +36,7 @@ Result<Machine> read_machine(const json& entry) {
     if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string() || !entry.contains("key") ||
         !entry["key"].is_string())
         return fail("expected 'kind', 'name', 'role' and 'key' of each machine");
-    const auto kind = choice(entry, "kind", kKinds);
+    const auto kind = choice(entry, "kind", kMachineKinds);
     const auto role = choice(entry, "role", kRoles);
     const auto key = tls::Fingerprint::parse(entry["key"].get<std::string>());
     if (!kind) return tl::unexpected(kind.error());
@@ -62,7 +62,7 @@ auto called(Machine::Kind kind, const std::string& name) {
     return [kind, name](const Machine& machine) { return machine.kind == kind && machine.name == name; };
 }
 
-bool name_ok(const std::string& name) {
+bool may_name_machine(const std::string& name) {
     const auto plain = [](unsigned char c) { return c > ' ' && c < 0x7f && c != '@' && c != '"' && c != '\\'; };
     return !name.empty() && name.size() <= kMaxName && std::ranges::all_of(name, plain);
 }
@@ -110,7 +110,7 @@ Outcome<std::string> Machines::invite(const Machine& machine, const std::string&
         return refuse(RefusalKind::unavailable,
                       "machines cannot join: walld has no state directory ('state_directory' in [wall] of wall.toml)");
     const bool names_itself = machine.kind == Machine::Kind::client && machine.name.empty();
-    if (!names_itself && !name_ok(machine.name)) return wrong_name();
+    if (!names_itself && !may_name_machine(machine.name)) return wrong_name();
     std::erase_if(invitations_, [now](const Invitation& i) { return i.until <= now; });
     if (invitations_.size() >= kMaxInvitations)
         return refuse(RefusalKind::busy, std::to_string(kMaxInvitations) + " machines are awaited already");
@@ -132,7 +132,7 @@ Outcome<Machine> Machines::join(Machine::Kind kind, const std::string& secret, c
     Machine machine = found->machine;
     machine.key = key;
     if (machine.name.empty()) {
-        if (!name_ok(host)) return wrong_name();
+        if (!may_name_machine(host)) return wrong_name();
         const auto namesake = std::ranges::find_if(machines_, called(kind, host));
         if (namesake != machines_.end() && namesake->key != key)
             return refuse(RefusalKind::conflict, "another client host has joined as '" + host +

@@ -10,6 +10,7 @@
 #include "common/base/whole_file.h"
 #include "common/config/load_config.h"
 #include "common/json/parse_json.h"
+#include "walld/control/names.h"
 
 namespace wall::walld {
 namespace {
@@ -17,16 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 constexpr const char* kEnding = ".toml";
-constexpr std::size_t kMaxName = 64;
 constexpr mode_t kMode = 0640;
 constexpr const char* kNoState =
     "walld has no state directory to keep that in ('state_directory' in [wall] of wall.toml)";
-
-/// What may be a file's name as it is.
-bool name_ok(const std::string& name) {
-    const auto good = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
-    return !name.empty() && name.size() <= kMaxName && name[0] != '.' && std::ranges::all_of(name, good);
-}
 
 tl::unexpected<Refusal> failed(const fs::path& path, const std::string& what) {
     return refuse(RefusalKind::failed, path.string() + ": " + what);
@@ -62,10 +56,8 @@ Outcome<Description> WallFile::described(std::string toml, const std::string& na
 
 Outcome<fs::path> WallFile::file_of(const std::string& node) const {
     if (state_.empty()) return refuse(RefusalKind::unavailable, kNoState);
-    if (name_ok(node)) return folder() / (node + kEnding);
-    return refuse(RefusalKind::invalid, "a node that is added has a name of 1 to " + std::to_string(kMaxName) +
-                                            " letters, digits, dots, dashes and underscores, which does not begin "
-                                            "with a dot");
+    if (may_name_file(node)) return folder() / (node + kEnding);
+    return refuse(RefusalKind::invalid, "the name of a node that is added has " + file_name_rule());
 }
 
 /// wall.toml, then the nodes that were added, in the order of their names.
@@ -75,7 +67,7 @@ Outcome<std::string> WallFile::text() const {
     std::vector<fs::path> files;
     std::error_code error;
     for (fs::directory_iterator at(folder(), error), end; !error && at != end; at.increment(error))
-        if (at->path().extension() == kEnding && name_ok(at->path().stem().string())) files.push_back(at->path());
+        if (at->path().extension() == kEnding && may_name_file(at->path().stem().string())) files.push_back(at->path());
     if (error && error != std::errc::no_such_file_or_directory) return failed(folder(), error.message());
     std::ranges::sort(files);
     for (const auto& file : files) {
@@ -119,7 +111,7 @@ Outcome<Description> WallFile::remove(const std::string& node) const {
     const auto before = read();
     if (!before) return before;
     if (before->config.nodes_of(node).empty()) return refuse(RefusalKind::not_found, "there is no node '" + node + "'");
-    const auto file = state_.empty() || !name_ok(node) ? fs::path() : folder() / (node + kEnding);
+    const auto file = state_.empty() || !may_name_file(node) ? fs::path() : folder() / (node + kEnding);
     std::error_code error;
     if (file.empty() || !fs::exists(file, error))
         return refuse(RefusalKind::conflict, "node '" + node + "' stands in " + path_ +

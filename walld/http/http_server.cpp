@@ -2,9 +2,7 @@
 #include "walld/http/http_server.h"
 
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -15,6 +13,7 @@
 #include "common/json/parse_json.h"
 #include "common/log/log.h"
 #include "common/log/refusals.h"
+#include "common/net/as_tuple.h"
 #include "gen/walld/http/page.gen.h"
 #include "walld/http/stream_session.h"
 #include "walld/wall/status.h"
@@ -23,7 +22,6 @@ namespace wall::walld {
 namespace {
 
 namespace http = boost::beast::http;
-constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint32_t kMaxHeader = 8 << 10, kMaxBody = 64 << 10;  // bytes
 
 constexpr const char* kJson = "application/json";
@@ -248,7 +246,7 @@ asio::awaitable<void> HttpServer::answer_all(std::shared_ptr<Connection> connect
         http::request_parser<http::string_body> parser;
         parser.header_limit(kMaxHeader);
         parser.body_limit(kMaxBody);
-        auto [read_error, read] = co_await http::async_read(stream, buffer, parser, kTuple);
+        auto [read_error, read] = co_await http::async_read(stream, buffer, parser, net::kTuple);
         if (read_error) break;
         idle.cancel();                     // a program that is asked to close may take its time
         std::optional<Response> response;  // none: there was a viewer, and all is said
@@ -259,7 +257,7 @@ asio::awaitable<void> HttpServer::answer_all(std::shared_ptr<Connection> connect
         response->prepare_payload();
         if (parser.get().method() == http::verb::head) response->body() = {};
         limit();
-        auto [write_error, written] = co_await http::async_write(stream, *response, kTuple);
+        auto [write_error, written] = co_await http::async_write(stream, *response, net::kTuple);
         go_on = !write_error && response->keep_alive() && !stopping_;
     }
 }
@@ -314,7 +312,7 @@ asio::awaitable<HttpServer::Response> HttpServer::log_in(const Request& request,
     const auto who = identities_.tokens().find(secret);
     if (!who) {
         asio::steady_timer wait(executor_, kWrongTokenDelay);
-        co_await wait.async_wait(kTuple);
+        co_await wait.async_wait(net::kTuple);
         co_return no(request, connection, 401, who.error());
     }
     log::info("login who={} from={}", log::quoted(who->text()), log::quoted(connection.from()));

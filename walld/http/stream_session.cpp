@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "walld/http/stream_session.h"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/bind_handler.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket.hpp>
 
 #include "common/daemon/keep_running.h"
+#include "common/net/as_tuple.h"
 
 namespace wall::walld {
 
@@ -24,7 +23,6 @@ void async_teardown(boost::beast::role_type, WebStream& stream, Handler&& handle
 namespace {
 
 namespace websocket = boost::beast::websocket;
-constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kMaxMessage = 64 << 10;  // bytes, from a viewer
 constexpr int kSendBuffer = 256 << 10;         // bytes in the kernel: what is there is old before a slow viewer gets it
 constexpr std::chrono::seconds kHandshakeLimit{10}, kIdleLimit{30};
@@ -55,7 +53,7 @@ asio::awaitable<void> send_all(std::shared_ptr<Connection> connection) {
     while (connection->open) {
         if (const auto& may = connection->still.at(StillMay::Clock::now()); !may) {
             const websocket::close_reason why(websocket::close_code::policy_error, kNoMore);
-            co_await connection->stream.async_close(why, kTuple);
+            co_await connection->stream.async_close(why, net::kTuple);
             co_return connection->close();
         }
         const auto message = connection->hub.next(*connection->viewer);
@@ -67,7 +65,7 @@ asio::awaitable<void> send_all(std::shared_ptr<Connection> connection) {
         const std::string& packet = message->packet ? *message->packet : nothing;
         const std::array<asio::const_buffer, 2> buffers{asio::buffer(message->head), asio::buffer(packet)};
         connection->stream.binary(message->binary);
-        const auto [error, sent] = co_await connection->stream.async_write(buffers, kTuple);
+        const auto [error, sent] = co_await connection->stream.async_write(buffers, net::kTuple);
         if (error) connection->close();
     }
 }
@@ -84,12 +82,12 @@ asio::awaitable<Outcome<void>> serve_viewer(std::shared_ptr<WebStream> socket,
     auto& stream = connection->stream;
     stream.set_option(websocket::stream_base::timeout{kHandshakeLimit, kIdleLimit, true});
     stream.read_message_max(kMaxMessage);
-    const auto [refused] = co_await stream.async_accept(request, kTuple);
+    const auto [refused] = co_await stream.async_accept(request, net::kTuple);
     if (refused) co_return Outcome<void>();
     net::spawn(stream.get_executor(), "viewer", send_all(connection));
     boost::beast::flat_buffer buffer;
     while (connection->open) {
-        const auto [error, bytes] = co_await stream.async_read(buffer, kTuple);
+        const auto [error, bytes] = co_await stream.async_read(buffer, net::kTuple);
         if (error) break;
         const auto text = buffer.data();
         const auto requests = WatchRequest::parse({static_cast<const char*>(text.data()), text.size()});

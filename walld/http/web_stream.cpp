@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "walld/http/web_stream.h"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <memory>
+
+#include "common/net/as_tuple.h"
 
 namespace wall::walld {
 
@@ -20,7 +20,7 @@ asio::awaitable<Result<void>> WebStream::shake_hands(const tls::TlsContext& own)
         *late = true;
         close();
     });
-    auto [error] = co_await tls_->async_handshake(asio::ssl::stream_base::server, asio::as_tuple(asio::use_awaitable));
+    auto [error] = co_await tls_->async_handshake(asio::ssl::stream_base::server, net::kTuple);
     if (*late) co_return fail("the TLS handshake took longer than " + std::to_string(kHandshakeLimit.count()) + " s");
     if (error) co_return fail("the TLS handshake failed: " + error.message());
     co_return Result<void>{};

@@ -5,6 +5,7 @@
 
 #include <prometheus/metric_family.h>
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -15,6 +16,9 @@ namespace wall::walld {
 
 using Families = std::vector<prometheus::MetricFamily>;
 using Labels = std::vector<prometheus::ClientMetric::Label>;
+
+/// Prometheus' unit.
+inline double seconds(std::uint64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
 
 /// How a figure is read off a subject: a lambda without captures that returns any number, or a function.
 template <class Subject>

@@ -8,8 +8,6 @@ namespace {
 using enum prometheus::MetricType;
 using NodeRef = const Node*;
 
-double seconds(std::uint64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
-
 constexpr MetricRow<NodeRef> kAlways[] = {
     {Gauge, "wallgl_node_up", "1 while the node's tileserver is connected, else 0.",
      [](const NodeRef& n) { return n->up ? 1.0 : 0.0; }},
@@ -17,7 +15,7 @@ constexpr MetricRow<NodeRef> kAlways[] = {
      [](const NodeRef& n) { return n->incarnation; }},
 };
 
-constexpr MetricRow<NodeRef> kInfo[] = {
+constexpr MetricRow<NodeRef> kNodeInfo[] = {
     {Gauge, "wallgl_node_info", "Always 1; what the node draws with.", [](const NodeRef&) { return 1.0; }},
 };
 
@@ -125,7 +123,7 @@ void add_node_metrics(Families& out, const Observed& observed) {
                         &node});
     }
     add_table(out, kAlways, all);
-    add_table(out, kInfo, info);
+    add_table(out, kNodeInfo, info);
     add_table(out, kWhileUp, up);
     add_objects(out, up);
     add_tiles(out, observed);

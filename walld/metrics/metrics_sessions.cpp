@@ -15,10 +15,9 @@ using SurfaceRef = const SurfaceEntry*;
 using Age = double;  // seconds
 using Bytes = std::uint64_t;
 
-double seconds(std::uint64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
 double bytes_of(const Bytes& bytes) { return static_cast<double>(bytes); }
 
-constexpr MetricRow<SessionRef> kInfo[] = {
+constexpr MetricRow<SessionRef> kSessionInfo[] = {
     {Gauge, "wallgl_session_info", "Always 1; which program it is and whose.", [](const SessionRef&) { return 1.0; }},
 };
 constexpr MetricRow<SessionRef> kSessions[] = {
@@ -172,7 +171,7 @@ void add_session_metrics(Families& out, const Observed& observed) {
                 [&](Labels with_kind, Bytes n) {
                     received.push_back({std::move(with_kind), n});
                 });
-    add_table(out, kInfo, info);
+    add_table(out, kSessionInfo, info);
     add_table(out, kSessions, sessions);
     add_table(out, kSent, sent(observed.wall));
     add_table(out, kLinks, on_links(observed.wall));

@@ -7,7 +7,6 @@ namespace wall::walld {
 namespace {
 
 constexpr std::size_t kMaxOpen = 8;  // a node that is later than this many frames is not waited for here either
-constexpr double kMeanFrames = 16;
 
 }  // namespace
 

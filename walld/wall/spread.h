@@ -14,6 +14,7 @@ class Spread {
 public:
     using Clock = std::chrono::steady_clock;
     using Milliseconds = std::chrono::duration<double, std::milli>;
+    static constexpr double kMeanFrames = 16;  ///< about how many a mean follows
     /// Upper bounds of the histogram, which has one more for what is beyond.
     static constexpr std::array<double, 10> kBoundsMs{0.5, 1, 2, 4, 8, 16, 33, 66, 133, 250};
     using Histogram = std::array<std::uint64_t, kBoundsMs.size() + 1>;
@@ -23,7 +24,7 @@ public:
 
     std::uint64_t frames() const { return frames_; }  ///< measured so far
     Milliseconds last() const { return last_; }
-    Milliseconds mean() const { return mean_; }  ///< of about the last 16 frames
+    Milliseconds mean() const { return mean_; }  ///< of about the last kMeanFrames
     Milliseconds most() const { return most_; }
     Milliseconds sum() const { return sum_; }
     const Histogram& histogram() const { return histogram_; }  ///< frames by their time

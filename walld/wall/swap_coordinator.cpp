@@ -5,12 +5,6 @@
 
 namespace wall::walld {
 
-namespace {
-
-constexpr double kMeanFrames = 16;
-
-}  // namespace
-
 Presents SwapCoordinator::set_nodes(const std::set<NodeIndex>& nodes, Clock::time_point now) {
     std::erase_if(members_, [&](const auto& m) { return !m.second.leaving() && !nodes.contains(m.first); });
     for (const auto node : nodes) members_.try_emplace(node, Member{.waited = presented_ == 0});
@@ -162,8 +156,8 @@ std::size_t SwapCoordinator::count_group(std::uint32_t frame) const {
 
 void SwapCoordinator::count_frame(Clock::time_point now) {
     if (last_present_)
-        interval_ +=
-            (Spread::Milliseconds(now - *last_present_) - interval_) / (interval_.count() == 0 ? 1 : kMeanFrames);
+        interval_ += (Spread::Milliseconds(now - *last_present_) - interval_) /
+                     (interval_.count() == 0 ? 1 : Spread::kMeanFrames);
     last_present_ = now;
 }
 

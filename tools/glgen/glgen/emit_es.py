@@ -68,14 +68,14 @@ def es_source(es):
         out.append(f"const GlTable kEs{_number(version)} = {{\n"
                    + "".join(f"    {_entry(es, i) if i.name in slots else _refused(i)},\n" for i in canonical)
                    + "};\n\n")
-    out.append("const EsVersion kVersionTable[] = {\n"
+    out.append("const EsVersion kEsVersionTable[] = {\n"
                + "".join(f"    {{{_number(v)}, {_text(es.missing(v))}, &kEs{_number(v)}}},\n" for v in es.versions)
                + "};\n\nconst EsExtension kExtensionTable[] = {\n"
                + "".join(f'    {{"{e.name}", "{e.node_word}", {_flag(not e.missing)}, {_flag("gles1" in e.apis)}, '
                          f'{_flag("gles2" in e.apis)}}},\n' for e in es.extensions)
                + "};\n\nconst EsWord kWordTable[] = {\n" + _word_rows(es)
                + "};\n\n}  // namespace\n\n"
-               "const std::span<const EsVersion> kEsVersions = kVersionTable;\n"
+               "const std::span<const EsVersion> kEsVersions = kEsVersionTable;\n"
                "const std::span<const EsExtension> kEsExtensions = kExtensionTable;\n"
                "const std::span<const EsWord> kEsWords = kWordTable;\n\n}  // namespace wall::client\n")
     return "".join(out)
