@@ -24,6 +24,12 @@ void FrameReader::lend(RawBytes memory) {
     if (next.capacity() < memory.capacity()) next = std::move(memory);
 }
 
+void FrameReader::forget_lent() {
+    if (in_payload_ || in_parts_) return;
+    payload_ = RawBytes();  // not {}, which keeps the memory
+    decoded_ = RawBytes();
+}
+
 void FrameReader::begin_frame_again() {
     read_ = filled_ = 0;
     if (std::exchange(in_payload_, false)) have_ = start_;

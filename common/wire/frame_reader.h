@@ -39,6 +39,8 @@ public:
     Result<std::optional<Frame>> next();
     /// Memory that the next payload may go to; what it holds does not matter.
     void lend(RawBytes memory);
+    /// What it was lent is not kept, unless a frame is coming into it.
+    void forget_lent();
     /// Of `batch`, `coded` and `part` frames, that have come whole.
     std::uint64_t batch_frames() const { return batch_frames_; }
     /// What has come of a frame that is not whole is forgotten: it comes again from its beginning.

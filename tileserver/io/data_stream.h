@@ -81,6 +81,12 @@ public:
     void fail(const std::string& reason);
     void close();
 
+    /// Memory that is kept for batches to come.
+    void forget_spares() {
+        source_.forget_lent();
+        if (batches_) batches_->forget_spares();
+    }
+
     SessionId session() const { return session_; }
     /// What brings the program's commands: "ring", "unix", "tcp" or "tls".
     const char* transport() const { return transport_; }

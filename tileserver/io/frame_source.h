@@ -41,6 +41,7 @@ public:
     void set_limits(std::uint32_t frame, std::uint32_t batch) { reader_.set_limits(frame, batch); }
     /// Memory that the next payload may go to.
     void lend(RawBytes memory) { reader_.lend(std::move(memory)); }
+    void forget_lent() { reader_.forget_lent(); }
 
 private:
     static constexpr std::size_t kMostAtOnce = 1 << 20;  // bytes, after which others on this thread have their turn

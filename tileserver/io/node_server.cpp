@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/io/node_server.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -557,7 +558,14 @@ void NodeServer::stats(const RenderStats& stats) {
         }
         tile_streams_.fill_stats(out);
         to_walld(envelope);
+        if (burst_.tick(bytes_received_)) give_memory_back();
     });
+}
+
+/// To the system.
+void NodeServer::give_memory_back() {
+    for (const auto& [id, stream] : streams_) stream->forget_spares();
+    ::malloc_trim(0);
 }
 
 void NodeServer::scaled(const ScaledTile& tile) {

@@ -17,6 +17,7 @@
 #include "common/config/wall_config.h"
 #include "common/daemon/keep_running.h"
 #include "common/net/control_connection.h"
+#include "tileserver/io/burst_watch.h"
 #include "tileserver/io/data_stream.h"
 #include "tileserver/io/part_sender.h"
 #include "tileserver/io/shut_out.h"
@@ -126,6 +127,7 @@ private:
     void end_session(SessionId session);
     void to_walld(const proto::Envelope& envelope);
     void post(std::function<void()> task);
+    void give_memory_back();
 
     asio::any_io_executor executor_;
     NodeKeys keys_;
@@ -155,6 +157,7 @@ private:
     std::size_t most_strangers_ = 1024;
     std::uint32_t last_stream_ = 0;
     std::uint64_t bytes_received_ = 0;
+    BurstWatch burst_;
     std::optional<std::string> failure_;
     Described described_;
     bool starts_anew_ = false;

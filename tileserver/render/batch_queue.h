@@ -68,6 +68,13 @@ public:
         return memory;
     }
 
+    /// None of it is kept: nothing comes for a while.
+    void forget_spares() {
+        const std::lock_guard lock(mutex_);
+        spare_.clear();
+        spare_bytes_ = 0;
+    }
+
     /// Of the batches that wait. Any thread.
     std::size_t bytes() const {
         const std::lock_guard lock(mutex_);

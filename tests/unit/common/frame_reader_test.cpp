@@ -133,6 +133,26 @@ TEST(FrameReader, PutsWhatComesIntoMemoryThatItWasLent) {
     EXPECT_NE(next[0].payload.data(), at) << "it was given away with the frame";
 }
 
+TEST(FrameReader, ForgetsWhatItWasLentBetweenFrames) {
+    FrameReader reader(8 << 20);
+    RawBytes memory(3 << 20);
+    const std::byte* const at = memory.data();
+    reader.lend(std::move(memory));
+    const auto bytes = frame(FrameKind::batch, 2 << 20, 1);
+    const auto half = static_cast<std::ptrdiff_t>(bytes.size() / 2);
+    EXPECT_TRUE(feed(reader, {bytes.begin(), bytes.begin() + half}, 100'000).empty());
+    reader.forget_lent();  // not what a frame is coming into
+    const auto first = feed(reader, {bytes.begin() + half, bytes.end()}, 100'000);
+    ASSERT_EQ(first.size(), 1u);
+    EXPECT_EQ(first[0].payload.data(), at);
+    reader.lend(RawBytes(3 << 20));
+    reader.forget_lent();
+    const auto next = feed(reader, frame(FrameKind::batch, 9, 2), 100'000);
+    ASSERT_EQ(next.size(), 1u);
+    EXPECT_LT(next[0].payload.capacity(), std::size_t{1} << 20);
+    EXPECT_EQ(next[0].payload, RawBytes(9, std::byte{2}));
+}
+
 /// Cut anywhere; then the frame that was not whole comes again.
 TEST(FrameReader, BeginsAFrameAgain) {
     std::vector<std::vector<std::byte>> frames = {frame(FrameKind::part, 3000, 1), frame(FrameKind::part, 500, 2),
