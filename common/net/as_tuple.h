@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the sources of this folder say to Asio in the same way.
+// What all that speaks by Asio says to it in the same way.
 #pragma once
 
 #include <netinet/in.h>

@@ -131,8 +131,19 @@ protected:
         ASSERT_NE(found, uniforms_.end()) << name;
         pack::Uniform(batch.buffer(), kProgram, found->location, GL_FLOAT_MAT4, 1, std::as_bytes(std::span(matrix)));
     }
-    /// What plain Mesa draws by these matrices, of `count` vertices.
+    /// What plain Mesa draws by these matrices: the ring, or what `draw` does with it.
     Pixels drawn_by(const Mat4& projection, const Mat4& modelview) {
+        return drawn_by(projection, modelview, [this](const Gl& gl) {
+            gl.Begin(GL_TRIANGLES);
+            for (std::size_t i = 0; i < ring_.size(); ++i) {
+                gl.Color3f(static_cast<float>(i % 3) / 2, static_cast<float>(i % 5) / 4, 1);
+                gl.Vertex3f(ring_[i].x, ring_[i].y, ring_[i].z);
+            }
+            gl.End();
+        });
+    }
+    template <class Draw>
+    Pixels drawn_by(const Mat4& projection, const Mat4& modelview, Draw&& draw) {
         Pixels pixels;
         {
             ReferenceWindow window(kWidth, kHeight);
@@ -142,12 +153,7 @@ protected:
             gl.LoadMatrixf(projection.data());
             gl.MatrixMode(GL_MODELVIEW);
             gl.LoadMatrixf(modelview.data());
-            gl.Begin(GL_TRIANGLES);
-            for (std::size_t i = 0; i < ring_.size(); ++i) {
-                gl.Color3f(static_cast<float>(i % 3) / 2, static_cast<float>(i % 5) / 4, 1);
-                gl.Vertex3f(ring_[i].x, ring_[i].y, ring_[i].z);
-            }
-            gl.End();
+            draw(gl);
             pixels = window.read();
         }
         node_.make_current();
@@ -190,15 +196,7 @@ TEST_F(TilesThatLookElsewhere, LabelsLieWhereTheyAreSeen) {
                           -3 * std::cos(0.31f * static_cast<float>(i))});
     // What plain Mesa draws by a view's own matrices.
     const auto wanted = [&](const Mat4& projection) {
-        Pixels pixels;
-        {
-            ReferenceWindow window(kWidth, kHeight);
-            const Gl& gl = window.gl();
-            gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-            gl.MatrixMode(GL_PROJECTION);
-            gl.LoadMatrixf(projection.data());
-            gl.MatrixMode(GL_MODELVIEW);
-            gl.LoadMatrixf(kModelview.data());
+        return drawn_by(projection, kModelview, [&](const Gl& gl) {
             gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
             gl.PixelZoom(2, 3);
             for (const Vertex& at : places) {
@@ -206,10 +204,7 @@ TEST_F(TilesThatLookElsewhere, LabelsLieWhereTheyAreSeen) {
                 for (int letter = 0; letter < 2; ++letter) gl.Bitmap(8, 8, 1, 2, kMove, 0, kLetter.data());
                 gl.DrawPixels(3, 2, GL_RGBA, GL_UNSIGNED_BYTE, kImage.data());
             }
-            pixels = window.read();
-        }
-        node_.make_current();
-        return pixels;
+        });
     };
     glstate::State state;  // the client's
     state.matrix.projection = kCamera;
