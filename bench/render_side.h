@@ -38,6 +38,7 @@ enum class To { null, llvmpipe };
 struct Ignore final : SessionOutput {
     void reply(RequestId, std::vector<std::byte>) override {}
     void frame_rendered(SurfaceId, std::uint32_t) override {}
+    void partial(NodeIndex, std::vector<std::byte>) override {}
 };
 
 /// A tileserver's render side with one tile and sessions that each have a window on it and two contexts.

@@ -3,7 +3,7 @@
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
 #                                         order, switch, pack, mesh, buffers, late_node, notice, gpus, views, march,
-#                                         off_wall, scaling, traffic, share, transport, coding, fair, streams, codec,
+#                                         sort_last, off_wall, scaling, traffic, share, transport, coding, fair, streams, codec,
 #                                         simulate)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -45,6 +45,7 @@ run late_node bench/late_node.py --json "$results/late_node.json"
 run notice bench/notice.py --json "$results/notice.json"
 run gpus bench/gpus.py --json "$results/gpus.json"
 run views bench/views.py --json "$results/views.json"
+run sort_last bench/sort_last.py --json "$results/sort_last.json"
 run march bench/march.py --json "$results/march.json"
 run off_wall bench/off_wall.py --json "$results/off_wall.json"
 run scaling bench/scaling.py --json "$results/scaling.json"

@@ -99,6 +99,12 @@ Needs needs_of_run(const Context& c, const ListRun& run) {
     return needs;
 }
 
+/// About: a vertex of glVertex3f takes 13 bytes, and most have more than that.
+double elements_of(const ListRun& run) {
+    constexpr double kBytesEach = 24;
+    return 1 + static_cast<double>(run.content.bytes()) / kBytesEach;
+}
+
 void call_run(Context& c, const ListRun& run) {
     c.flush_block();
     c.determine_modelview_form();
@@ -109,9 +115,10 @@ void call_run(Context& c, const ListRun& run) {
     draw_in_passes(c.state, *c.captures, [&] {
         std::vector<Node*> reached;
         const bool somewhere = bounded && c.captures->now == nullptr;
+        Drawn drawn = somewhere ? Drawn(placing.projection, run.box) : Drawn::anywhere(placing.projection);
+        drawn.elements = elements_of(run);
         c.session().draw(
-            c.draw_source(), somewhere ? Drawn(placing.projection, run.box) : Drawn::anywhere(placing.projection),
-            needs_of_run(c, run),
+            c.draw_source(), drawn, needs_of_run(c, run),
             [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session().nodes(), node, buffer, run); },
             [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
             [&](Node& node) {

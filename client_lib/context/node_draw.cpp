@@ -280,7 +280,10 @@ void NodeDraw::send() {
 void NodeDraw::send_once() {
     const bool bounded = bounded_ && c_.captures->now == nullptr;
     const glstate::Projection& by = placing_.projection;
-    const Drawn drawn = bounded ? Drawn(by, known_->box, draw_.mode) : Drawn::anywhere(by);
+    Drawn drawn = bounded ? Drawn(by, known_->box, draw_.mode) : Drawn::anywhere(by);
+    drawn.elements = static_cast<double>(drawn_elements());
+    if (cut() && !c_.state.line_point.line_stipple_enabled)
+        drawn.pieces = static_cast<std::uint32_t>(known_->pieces->count());
     c_.session().draw(
         c_.draw_source(), drawn, needs(), [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
         [&](wire::PackBuffer& buffer) { pack(buffer); },

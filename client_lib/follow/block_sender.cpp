@@ -45,6 +45,14 @@ void BlockSender::run() {
     if (kept_) pack_whole(followers_.hidden.prepare(*kept_, source_, needs_), kept_->layer.bit());
     NodeMasks& nodes = scratch_.touched;
     nodes_touched(source_.draw.layers(), box, nodes);
+    const auto commands = static_cast<double>(packer_.commands());
+    if (const auto dealt =
+            everywhere ? std::span<const Dealer::Dealt>() : followers_.dealer.deal(source_, box, commands);
+        !dealt.empty()) {
+        send_dealt(dealt.front(), nodes);
+        return note_content(source_);
+    }
+    followers_.dealer.compose(source_.draw);
     const bool single = packer_.primitives().size() == 1 && !may_be_divided(packer_.primitives()[0]);
     const bool whole = packer_.has_rare() || everywhere || single || source_.draw.of_objects();
     if (nodes.size() <= 1 || whole) send_whole(nodes);
@@ -64,19 +72,40 @@ void BlockSender::send_whole(const NodeMasks& nodes) {
     for (const auto& [index, slots] : nodes) {
         Node& node = followers_.nodes[index];
         if (!source_.draw.goes_to(node)) continue;
-        Needs needs = needs_;
-        const LeadingAttributes leading = take_leading(node, needs);
-        auto& buffer = followers_.updater.prepare(node, source_, needs);
-        const std::size_t before = buffer.bytes();
-        const auto block = begin_block(buffer, slots);
-        pack_leading(node, buffer, leading);
-        buffer.append(packer_, {}, packer_.mark());
-        end_block(buffer, block);
-        count(node, NodeCounter::geometry_bytes, buffer.bytes() - before);
-        count(node, NodeCounter::blocks, 1);
+        send_to(node, slots, false);
         reached.push_back(&node);
     }
     fold(reached);
+}
+
+/// To one node, and to those that record.
+void BlockSender::send_dealt(const Dealer::Dealt& dealt, const NodeMasks& nodes) {
+    std::vector<Node*> reached;
+    if (dealt.mask != 0 && dealt.node->alive()) {
+        send_to(*dealt.node, dealt.mask, true);
+        reached.push_back(dealt.node);
+    }
+    for (const auto& [index, slots] : nodes) {
+        Node& node = followers_.nodes[index];
+        if (!node.records() || !source_.draw.goes_to(node)) continue;
+        send_to(node, slots, false);
+        reached.push_back(&node);
+    }
+    fold(reached);
+}
+
+void BlockSender::send_to(Node& node, std::uint64_t slots, bool dealt) {
+    Needs needs = needs_;
+    const LeadingAttributes leading = take_leading(node, needs);
+    auto& buffer =
+        dealt ? followers_.dealer.prepare(node, source_, needs) : followers_.updater.prepare(node, source_, needs);
+    const std::size_t before = buffer.bytes();
+    const auto block = begin_block(buffer, slots);
+    pack_leading(node, buffer, leading);
+    buffer.append(packer_, {}, packer_.mark());
+    end_block(buffer, block);
+    count(node, NodeCounter::geometry_bytes, buffer.bytes() - before);
+    count(node, NodeCounter::blocks, 1);
 }
 
 /// `seen()`: the attributes that the first piece of a share sees. What the block has set by then is packed with it, and

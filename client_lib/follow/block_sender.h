@@ -69,6 +69,9 @@ private:
     /// The block as one Block for these layers.
     void pack_whole(wire::PackBuffer& buffer, std::uint64_t slots) const;
     void send_whole(const NodeMasks& nodes);
+    void send_dealt(const Dealer::Dealt& dealt, const NodeMasks& nodes);
+    /// What send_whole() and send_dealt() do on one node.
+    void send_to(Node& node, std::uint64_t slots, bool dealt);
     void send_apart();
     void send_primitive(const Primitive& primitive, BlockWalk& walk);
     bool may_be_divided(const Primitive& primitive) const;

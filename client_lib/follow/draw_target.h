@@ -75,6 +75,8 @@ public:
     ClientSurface* with_hidden_part() const {
         return surface_ && only_ == nullptr && surface_->hidden ? surface_ : nullptr;
     }
+    /// The surface whose geometry may be dealt to nodes instead; null: there is none, or it is no picture of it.
+    ClientSurface* dealt_surface() const { return only_ == nullptr ? surface_ : nullptr; }
     /// Whether what is drawn goes to a node that has a layer; a node may be left out for a while.
     bool goes_to(const Node& node) const {
         return node.alive() && (objects_ ? node.left_out.empty() : !node.left_out.contains(surface_->id));

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 
+#include "client_lib/follow/dealer.h"
 #include "client_lib/follow/draw_source.h"
 #include "client_lib/follow/hidden_parts.h"
 #include "client_lib/follow/node_updater.h"
@@ -22,6 +23,7 @@ struct Followers {
     Nodes& nodes;
     NodeUpdater& updater;
     HiddenParts& hidden;
+    Dealer& dealer;
     Sight& sight;
 };
 
@@ -85,16 +87,31 @@ void draw_on(const Followers& followers, const DrawSource& source, const Drawn& 
         pack(buffer);
         end_block(buffer, block);
     };
-    auto& [nodes, updater, hidden, sight] = followers;
+    auto& [nodes, updater, hidden, dealer, sight] = followers;
     if (KeptFrame* const kept = hidden.begin_keeping(source, reach.window)) {
         Node& node = nodes[kept->layer];
         before(node, nodes.batch(node, source.id));
         pack_block(hidden.prepare(*kept, source, needs), kept->layer.bit());
         after(kept->follower);
     }
+    using Parts = std::span<const Dealer::Dealt>;
+    const Parts dealt = everywhere ? Parts() : dealer.deal(source, reach, drawn.elements, drawn.pieces);
+    if (dealt.empty()) dealer.compose(source.draw);
+    for (const Dealer::Dealt& part : dealt) {
+        if (part.mask == 0 || !part.node->alive()) continue;
+        wire::PackBuffer& buffer = dealer.prepare(*part.node, source, needs);
+        before(*part.node, buffer);
+        const std::size_t bytes = buffer.bytes();
+        const OpenBlock block = begin_block(buffer, part.mask);
+        if (part.behind != 0) glapi::pack::PartialRange(buffer, part.first, part.behind);
+        pack(buffer);
+        end_block(buffer, block);
+        count(*part.node, NodeCounter::geometry_bytes, buffer.bytes() - bytes);
+        after(*part.node);
+    }
     for (const auto& [index, slots] : nodes.touched(source.draw.layers(), reach)) {
         Node& node = nodes[index];
-        if (!source.draw.goes_to(node)) continue;
+        if (!source.draw.goes_to(node) || (!dealt.empty() && !node.records())) continue;
         wire::PackBuffer& buffer = updater.prepare(node, source, needs);
         before(node, buffer);
         const std::size_t bytes = buffer.bytes();

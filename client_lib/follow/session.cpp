@@ -194,6 +194,8 @@ void ClientSession::swap(ContextId context, ClientSurface& surface) {
     {
         std::lock_guard lock(mutex_);
         whole_frames = std::exchange(surface.cleared, false);
+        dealer_.compose(surface);
+        dealer_.finish_frame(surface);
         hidden_.finish_frame(surface);
         ++surface.frame;
         surface.drawn = false;

@@ -145,9 +145,10 @@ private:
     Nodes nodes_{stream_events()};
     NodeUpdater updater_{nodes_};
     HiddenParts hidden_{nodes_, open_surfaces_};
+    Dealer dealer_{nodes_, updater_, options().sort_last};
     Surfaces surfaces_{*control_, nodes_, hidden_, open_surfaces_};
     Sight sight_;
-    const Followers followers_{nodes_, updater_, hidden_, sight_};
+    const Followers followers_{nodes_, updater_, hidden_, dealer_, sight_};
     const std::unique_ptr<SortScratch> sort_scratch_;
 };
 
@@ -205,6 +206,7 @@ std::optional<std::vector<std::byte>> ClientSession::ask(const DrawSource& sourc
     std::shared_ptr<NodeStream> stream;  // the node may get another one meanwhile
     const RequestId request = packing([&] {
         if (!node.answers() || !source.draw) return RequestId();
+        dealer_.compose(source.read);
         const RequestId next = nodes_.next_request();
         pack(updater_.prepare(node, source), next);
         stats().count_round_trip(function);
@@ -222,6 +224,7 @@ std::vector<std::optional<std::vector<std::byte>>> ClientSession::ask_all(const 
                                                                           const char* function, Pack&& pack) {
     std::vector<std::pair<std::shared_ptr<NodeStream>, RequestId>> asked;  // null: cannot be asked
     packing([&] {
+        dealer_.compose(source.read);
         for (const TargetLayer& layer : layers) {
             Node& node = nodes_[layer];
             asked.emplace_back(node.answers() && source.draw ? node.stream : nullptr, nodes_.next_request());

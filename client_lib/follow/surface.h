@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "client_lib/follow/copy_habit.h"
+#include "client_lib/follow/deal.h"
 #include "client_lib/follow/surface_options.h"
 #include "client_lib/follow/view_use.h"
 #include "client_lib/geometry/target_layers.h"
@@ -43,6 +44,7 @@ public:
     bool cleared = false;                ///< all of its back buffer, since the last swap
     bool depth_images = false;           ///< depth or stencil was drawn as an image
     CopyHabit copies;                    ///< out of it
+    Deal deal;                           ///< of its geometry to nodes
     ViewUse views;                       ///< whether tiles that look elsewhere show what is there
     std::optional<Stereo> stereo;        ///< as the last placement has it
     std::unique_ptr<HiddenPart> hidden;  ///< what no tile shows; null: nothing

@@ -47,6 +47,8 @@ struct Drawn {
     const geom::Box* box = nullptr;
     std::optional<GLenum> mode;
     const glstate::Projection* seen_by = nullptr;  ///< whose camera draws them; null: none does
+    double elements = 0;                           ///< about so many, of geometry; 0: it is something else
+    std::uint32_t pieces = 0;                      ///< in which it may be drawn by several nodes; 0: it is not cut
     std::optional<glstate::Vec4> clip;             ///< of an image(), in views
     PixelRect covered{};                           ///< of it, about that place
 };

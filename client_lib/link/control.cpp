@@ -163,6 +163,7 @@ Hello Hello::from_environment() {
         hello.invalid = parse_parallel(text).error().message;
     const auto hold = environment("WALLGL_HOLD");
     hello.hold = !hold.empty() && hold != "0";
+    hello.sort_last = environment("WALLGL_SORT_LAST") == "1";
     if (const auto stereo = environment("WALLGL_STEREO"); !stereo.empty()) {
         hello.stereo = stereo_of_text(stereo);
         if (!hello.stereo) hello.invalid = "WALLGL_STEREO: expected PERCENT or PERCENT,DISTANCE, got '" + stereo + "'";

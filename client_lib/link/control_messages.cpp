@@ -211,6 +211,7 @@ NodeInfo read_node(pbf_reader in, bool up) {
             case 3: node.ticket = read_string(in); break;
             case 4: node.incarnation = read_u32(in); break;
             case 6: node.records = read_u32(in) != 0; break;
+            case 7: node.renders = read_u32(in) != 0; break;
             default: in.skip();
         }
     }
@@ -346,6 +347,7 @@ std::string encode(const Hello& hello) {
         put_string(out, 8, hello.token);
         if (hello.resume) put_resume(out, 10, *hello.resume);
         if (hello.stereo) put_stereo(out, 11, *hello.stereo);
+        if (hello.sort_last) out.add_bool(12, true);
         if (!hello.group) return;
         pbf_writer group(out, 9);
         put_string(group, 1, hello.group->group);

@@ -39,6 +39,7 @@ struct Hello {
     bool fullscreen = false;         ///< WALLGL_RECT=fullscreen
     bool hold = false;               ///< WALLGL_HOLD
     std::optional<Stereo> stereo;    ///< WALLGL_STEREO
+    bool sort_last = false;          ///< WALLGL_SORT_LAST
     std::string token;               ///< from WALLGL_TOKEN_FILE: who owns the session, if not the Unix user
     std::optional<Parallel> group;   ///< from WALLGL_PARALLEL
     std::optional<Resume> resume;    ///< it was on the wall before
@@ -62,6 +63,7 @@ struct NodeInfo {
     std::uint32_t incarnation = 0;  ///< grows when the node's process is a new one
     bool up = true;                 ///< false: only `node` means anything
     bool records = false;           ///< it keeps in a file what comes: it shows nothing and answers nothing
+    bool renders = false;           ///< of a sort-last session: it may draw what other nodes show
 };
 
 struct TileInfo {

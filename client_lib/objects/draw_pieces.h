@@ -21,6 +21,7 @@ public:
         stamp_ = next_stamp();
     }
 
+    std::size_t count() const { return boxes_.size(); }
     std::uint64_t latest() const override { return stamp_; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;

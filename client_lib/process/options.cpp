@@ -36,6 +36,7 @@ const Options& options() {
                                                 is("WALLGL_SHOWN_ONLY", "1"),
                                                 !is("WALLGL_RING", "0"),
                                                 coding(),
+                                                is("WALLGL_SORT_LAST", "1"),
                                                 cameras()};
     return *read;
 }

@@ -16,7 +16,8 @@ struct Options {
     bool shown_only = false;   ///< WALLGL_SHOWN_ONLY=1: what no tile shows is not kept, and reads back black
     bool ring = true;          ///< WALLGL_RING=0: no shared memory with nodes of this machine, sockets only
     Coding coding =
-        Coding::measured;  ///< WALLGL_CODING=0: never, 1: always; else where the link is measured to be slow
+        Coding::measured;    ///< WALLGL_CODING=0: never, 1: always; else where the link is measured to be slow
+    bool sort_last = false;  ///< WALLGL_SORT_LAST=1: geometry may be dealt to nodes (docs/sort-last.md)
     std::vector<std::string> cameras = {};  ///< WALLGL_CAMERA: uniforms that may be a program's camera
 };
 

@@ -14,6 +14,7 @@
 #include "common/config/read_gpus.h"
 #include "common/config/read_output.h"
 #include "common/config/read_people.h"
+#include "common/config/read_roles.h"
 #include "common/config/read_tile_output.h"
 #include "common/config/read_view.h"
 
@@ -100,7 +101,7 @@ TriangleOrder read_triangle_order(TreeReader& read, const toml::table& table) {
 }
 
 NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
-    read.only(table, "[[node]]", {"name", "backend", "listen", "gpus", "triangle_order", "tile"});
+    read.only(table, "[[node]]", {"name", "backend", "listen", "gpus", "triangle_order", "role", "tile"});
     NodeConfig out;
     out.name = out.process = read.text(table, "name");
     const auto backend = read.text(table, "backend", "egl");
@@ -108,18 +109,22 @@ NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec
     if (found != kBackends.end()) out.backend = *found;
     else read.refuse(table.get("backend")->source(), "'backend' is '" + backend + "': expected \"egl\" or \"osmesa\"");
     out.triangle_order = read_triangle_order(read, table);
+    out.roles = read_roles(read, table);
     if (const auto* listen = table.get("listen")) out.listen = read.address(*listen, "'listen'");
     else out.listen = {.path = {}, .host = "127.0.0.1", .port = net::kDefaultDataPort};
-    const auto tiles = read.tables(table, "tile", "[[node.tile]]");
+    const auto tiles = tile_tables(read, table);
     for (const auto* tile : tiles) {
         out.tiles.push_back(read_tile(read, *tile, eye));
         check_output(read, *tile, out);
     }
+    if (!out.roles.display && !out.tiles.empty())
+        read.refuse(table.get("role")->source(),
+                    "node '" + out.name + "' has tiles: expected \"display\" among its roles");
     const auto pictures = out.tiles.size() + static_cast<std::size_t>(std::ranges::count_if(out.tiles, shows_two_eyes));
-    if (pictures >= wire::kOffscreenSlot)
+    if (pictures > wire::kTileSlots)
         read.refuse(table.source(), "node '" + out.name + "' has " + std::to_string(pictures) +
                                         " tiles, counting those of two eyes twice: expected at most " +
-                                        std::to_string(wire::kOffscreenSlot - 1));
+                                        std::to_string(wire::kTileSlots));
     return out;
 }
 
@@ -144,7 +149,7 @@ void relate_tiles(TreeReader& read, const toml::table& root, WallConfig& wall) {
     if (read.error()) return;
     std::vector<DescribedTile> all;
     for (auto node = wall.nodes.begin(); const auto* table : read.tables(root, "node", "[[node]]")) {
-        for (auto tile = node->tiles.begin(); const auto* of_tile : read.tables(*table, "tile", "[[node.tile]]"))
+        for (auto tile = node->tiles.begin(); const auto* of_tile : tile_tables(read, *table))
             all.push_back({of_tile, &*tile++});
         ++node;
     }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/config/gpus.h"
+#include "common/config/read_roles.h"
 
 namespace wall::config {
 namespace {
@@ -24,7 +25,7 @@ void check_cards(TreeReader& read, const toml::table& table, const NodeConfig& n
                     "'gpus' of a node with tiles on monitors without a window system: expected 'gpu' of each tile, "
                     "the address of the card that its monitor is plugged into");
     const bool named = std::ranges::any_of(node.tiles, [](const auto& tile) { return tile.gpu != kAnyGpu; });
-    for (auto tile = node.tiles.begin(); const auto* of_tile : read.tables(table, "tile", "[[node.tile]]")) {
+    for (auto tile = node.tiles.begin(); const auto* of_tile : tile_tables(read, table)) {
         const auto& [gpu, name] = std::tie(tile->gpu, tile->name);
         ++tile;
         if (gpu != kAnyGpu && is_gpu_number(gpu))
@@ -44,11 +45,14 @@ void check(TreeReader& read, const toml::table& table, const NodeConfig& node, s
     if (gpus != 0 && node.backend != Backend::egl)
         read.refuse(table.get("gpus")->source(),
                     "'gpus' of a node with backend \"osmesa\", which draws without one: expected backend = \"egl\"");
+    if (gpus != 0 && node.tiles.empty())
+        read.refuse(table.get("gpus")->source(),
+                    "'gpus' of a node without tiles: expected a [[node]] for each GPU that renders");
     if (gpus != 0 && in_window)
         read.refuse(table.get("gpus")->source(),
                     "'gpus' of a node with tiles in windows, which the X server's graphics card draws: expected a "
                     "[[node]] of their own for these");
-    for (auto tile = node.tiles.begin(); const auto* of_tile : read.tables(table, "tile", "[[node.tile]]")) {
+    for (auto tile = node.tiles.begin(); const auto* of_tile : tile_tables(read, table)) {
         const auto& [gpu, name] = std::tie(tile->gpu, tile->name);
         ++tile;
         if (gpu == kAnyGpu) continue;

@@ -70,6 +70,12 @@ const char* output_name(const TileConfig& tile);
 inline bool is_headless(const TileConfig& tile) { return !tile.window && !tile.kms; }
 
 /// What one process draws: the tiles of a [[node]], or those that one of its GPUs draws if there are several.
+/// What a node may do for programs whose geometry is dealt to nodes (docs/sort-last.md): draw for others, show.
+struct Roles {
+    bool render = true, display = true;
+    bool operator==(const Roles&) const = default;
+};
+
 struct NodeConfig {
     std::string name;
     Backend backend = Backend::egl;
@@ -78,6 +84,7 @@ struct NodeConfig {
     std::string process{};   ///< the [[node]]'s name, of the tileserver that it is a part of
     std::uint16_t part = 0;  ///< number among the nodes of that
     TriangleOrder triangle_order = TriangleOrder::automatic;
+    Roles roles{};
     /// That draws its tiles: it is the same for all.
     std::string gpu() const { return tiles.empty() ? "auto" : tiles.front().gpu; }
     /// Null: it has none there.

@@ -42,6 +42,8 @@ enum class FrameKind : std::uint8_t {
     receipt = 4,  ///< frames:u64 that have come, from the stream's beginning on
     // client -> node
     coded = 5,  ///< a whole batch, coded
+    // node -> node
+    partial = 6,  ///< of a window, for one layer (tileserver/partials/partial_format.h)
     // node -> client
     welcome = 16,      ///< stream:u32, by which a later hello names it; 0: it ends with its connection
     reply = 17,        ///< request:u32, then the answer's bytes

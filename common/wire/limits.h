@@ -7,7 +7,7 @@
 namespace wall::wire {
 
 inline constexpr std::uint32_t kProtocolVersion =
-    10;  ///< of control; both sides must agree exactly (data: kStreamVersion, wire.gen.h)
+    11;  ///< of control; both sides must agree exactly (data: kStreamVersion, wire.gen.h)
 inline constexpr std::uint32_t kMaxControlMessage = 64u << 20;  ///< bytes; the largest is the stacking of many windows
 inline constexpr std::uint32_t kControlPart = 1u << 20;         ///< bytes of a picture or an answer in one message
 inline constexpr std::uint32_t kMaxFramePayload = 256u << 20;   ///< bytes
@@ -20,6 +20,8 @@ inline constexpr std::uint64_t kMostInvocations = std::uint64_t{1}
                                                   << 31;      ///< of a compute shader in one dispatch: as for a draw
 inline constexpr std::uint32_t kMaxTilesPerNode = 64;         ///< a tile mask is 64 bits
 inline constexpr std::uint32_t kOffscreenSlot = 63;           ///< tile slot of a surface that is on no tile
+inline constexpr std::uint32_t kPartialSlot = 62;             ///< a block's other slots are layers of other nodes
+inline constexpr std::uint32_t kTileSlots = 62;               ///< those below are tiles'
 inline constexpr std::uint32_t kMaxSurfaceExtent = 1u << 15;  ///< pixels a side of a surface or a layer
 inline constexpr std::uint32_t kMaxMembers = 64;              ///< processes of one parallel program
 inline constexpr std::uint32_t kMaxSharedSurfaces =

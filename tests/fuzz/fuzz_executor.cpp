@@ -49,6 +49,7 @@ struct BoundedDraws {
 struct Ignore final : SessionOutput {
     void reply(RequestId, std::vector<std::byte> bytes) override { answer = std::move(bytes); }
     void frame_rendered(SurfaceId, std::uint32_t) override {}
+    void partial(NodeIndex, std::vector<std::byte>) override {}
     std::vector<std::byte> answer;
 };
 

@@ -160,7 +160,8 @@ def play_all(subjects: list[Subject], expected: Collection[Check], options: argp
             stage, count = MesaStage(x_server()), 1
         else:
             stage = stack.enter_context(WallStage(x_server(), tuple(map(int, tiles.split("x"))), options.backend,
-                                                  gpus=options.gpus, triangle_order=options.triangle_order))
+                                                  gpus=options.gpus, triangle_order=options.triangle_order,
+                                                  sort_last=options.sort_last))
             count = len(stage.parts(WINDOW))
         servers = [x_server() for _ in range(count)]
         parts_of_window = whole_window if tiles == "mesa" else stage.parts
@@ -204,6 +205,7 @@ def main() -> int:
     arguments.add_argument("--sample", default="1/1", metavar="K/N", help="of recordings only the Kth of every N")
     arguments.add_argument("--backend", default="egl", choices=["egl", "osmesa"])
     arguments.add_argument("--gpus", type=int, default=0, help="all tiles on one node that draws with so many")
+    arguments.add_argument("--sort-last", action="store_true", help="geometry is dealt to the nodes")
     arguments.add_argument("--triangle-order", default="", choices=["auto", "on", "off"], help="of the nodes")
     arguments.add_argument("--only", action="append", default=[], help="recording or scene; may be given again")
     arguments.add_argument("--report", type=Path, default=Path("test-output/golden"),

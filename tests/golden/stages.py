@@ -146,15 +146,17 @@ def parts_of(window: Rect, tiles: tuple[int, int], tile_size: tuple[int, int]) -
 class WallStage:
     """A wall of `tiles`, just large enough for a subject's window: another one for windows of another size. On one tile
     the window fills it; on several it lies where tile borders cut it at odd places. Each tile has a node, or all have
-    one that draws with `gpus` GPUs. `triangle_order` is the nodes' in wall.toml."""
+    one that draws with `gpus` GPUs. `triangle_order` is the nodes' in wall.toml.
+    `sort_last`: programs run so (docs/sort-last.md)."""
 
     SLACK = {(1, 1): (0, 0), (2, 2): (12, 10), (3, 2): (20, 14)}  # pixels of the wall beside the window
 
     def __init__(self, x: XServer, tiles: tuple[int, int], backend: str = "egl", swap_timeout_ms: int = 10000,
-                 gpus: int = 0, triangle_order: str = ""):
+                 gpus: int = 0, triangle_order: str = "", sort_last: bool = False):
         slack = self.SLACK.get(tiles, (16, 16))
         self._x, self._tiles, self._backend, self._slack = x, tiles, backend, slack
         self._swap_timeout_ms, self._gpus, self._triangle_order = swap_timeout_ms, gpus, triangle_order
+        self._sort_last = sort_last
         self._origin = (slack[0] // 3, slack[1] // 2)
         self._window = WINDOW
         self._wall = self._wall_for(WINDOW)
@@ -193,7 +195,7 @@ class WallStage:
         """Draws the recording's last frame over and over, at (x, y, width, height) of the wall."""
         self._fit(recording.window)
         rect = (*self._origin, *recording.window)
-        prefix = self._wall.wallrun(rect=rect, name=recording.name)
+        prefix = self._wall.wallrun(rect=rect, name=recording.name, sort_last=self._sort_last)
         play = Play(recording.looping(), self._x.environment(vblank_mode="0"), prefix, unseen=True)
         try:
             yield self._wall, play, rect
@@ -206,7 +208,7 @@ class WallStage:
         with tempfile.TemporaryDirectory() as folder:
             stats = Path(folder) / "stats.json"
             rect = None if self._tiles == (1, 1) else (*self._origin, *subject.window)
-            prefix = self._wall.wallrun(rect=rect, name=subject.name)
+            prefix = self._wall.wallrun(rect=rect, name=subject.name, sort_last=self._sort_last)
             play = Play(subject, self._x.environment(WALLGL_STATS=str(stats), vblank_mode="0"), prefix)
             session = Session(self._wall, play.pid)
             for number, frame in enumerate(play.frames()):

@@ -218,7 +218,7 @@ class Wall:
 
     def wallrun(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
                 name: str = "", hold: bool = False, parallel: int = 0, stereo: str = "",
-                camera: str = "") -> list[str]:
+                camera: str = "", sort_last: bool = False) -> list[str]:
         """The command line that starts a program on this wall."""
         line = [self.client_bin / "wallrun", "--walld", self.address]
         line += ["--rect", ",".join(map(str, rect))] if rect else []
@@ -228,6 +228,7 @@ class Wall:
         line += ["--stereo", stereo] if stereo else []
         line += ["--camera", camera] if camera else []
         line += ["--parallel", parallel] if parallel else []
+        line += ["--sort-last"] if sort_last else []
         return [str(word) for word in (*line, "--", *command)]
 
     def run(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,

@@ -230,6 +230,40 @@ void Layer::write_texture(GLuint texture, const geom::Rect& area, std::vector<st
     gl_.TextureSubImage2D(texture, 0, area.x, y, area.width, area.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
 }
 
+/// In the texture, whose rows may go down; `area` in window pixels.
+void Layer::read_block(PixelBlock& block) const {
+    block.top_row_first = flip_y_;
+    block.colors.resize(block.pixels());
+    block.depths.resize(block.pixels());
+    const auto bytes = static_cast<GLsizei>(block.pixels() * sizeof(std::uint32_t));
+    const auto [x, y] = texture_place(block.area);
+    gl_.Flush();  // as in copy()
+    gl_.GetTextureSubImage(format_.double_buffered ? back_ : front_, 0, x, y, 0, block.area.width, block.area.height, 1,
+                           GL_RGBA, GL_UNSIGNED_BYTE, bytes, block.colors.data());
+    gl_.GetTextureSubImage(depth_stencil_, 0, x, y, 0, block.area.width, block.area.height, 1, GL_DEPTH_STENCIL,
+                           GL_UNSIGNED_INT_24_8, bytes, block.depths.data());
+}
+
+void Layer::write_block(const PixelBlock& block) {
+    const auto [x, y] = texture_place(block.area);
+    gl_.TextureSubImage2D(format_.double_buffered ? back_ : front_, 0, x, y, block.area.width, block.area.height,
+                          GL_RGBA, GL_UNSIGNED_BYTE, block.colors.data());
+    gl_.TextureSubImage2D(depth_stencil_, 0, x, y, block.area.width, block.area.height, GL_DEPTH_STENCIL,
+                          GL_UNSIGNED_INT_24_8, block.depths.data());
+}
+
+std::pair<std::int32_t, std::int32_t> Layer::texture_place(const geom::Rect& area) const {
+    const std::int32_t x = area.x - geometry_.offset_x(), y = area.y - geometry_.offset_y();
+    return {x, flip_y_ ? height() - (y + area.height) : y};
+}
+
+void Layer::clear_to_depth(std::uint32_t depth) {
+    gl_.Flush();
+    clear_texture(gl_, format_.double_buffered ? back_ : front_, color_format());
+    const std::uint32_t value = depth != 0 ? 0xffffff00 : 0;
+    gl_.ClearTexImage(depth_stencil_, 0, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, &value);
+}
+
 void Layer::copy(GLuint from, const Layer& source, GLuint to, GLenum target) const {
     // Where the two areas overlap on the canvas, placed within each texture.
     const geom::Rect common = geom::intersect(geometry_.area, source.geometry_.area);

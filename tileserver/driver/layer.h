@@ -24,6 +24,7 @@
 #include "common/geom/rect.h"
 #include "common/geom/view.h"
 #include "tileserver/driver/render_target.h"
+#include "tileserver/partials/partial_format.h"
 
 namespace wall::tileserver {
 
@@ -83,6 +84,13 @@ public:
     /// neutral.
     void read_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels) const;
     void write_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels);
+    /// What the window's next picture has in `block.area`, which the layer holds, of a layer with depth and stencil
+    /// values and one sample a pixel, 1:1. Pixel transfer must be neutral.
+    void read_block(PixelBlock& block) const;
+    /// The same, written; of the stencil values those that were read.
+    void write_block(const PixelBlock& block);
+    /// All of it has no colour, this depth (0 or 1) and stencil value 0.
+    void clear_to_depth(std::uint32_t depth);
 
     /// The accumulation buffer: 4 signed 16-bit components a pixel, bottom row first; empty until it is used.
     std::vector<std::int16_t> accum;
@@ -90,6 +98,8 @@ public:
 private:
     /// To the program the frame that it ended last is the front buffer, shown or not.
     GLuint program_front() const { return frame_waits_ ? ready_ : front_; }
+    /// Where a part of the window begins in the layer's textures.
+    std::pair<std::int32_t, std::int32_t> texture_place(const geom::Rect& area) const;
     GLuint make_texture(GLenum format, std::uint32_t samples) const;
     void attach(GLenum point, GLuint texture);
     /// The same texels, as what is drawn to sees them: a view of them as sRGB, where the window has that.

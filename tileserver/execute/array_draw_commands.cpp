@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "common/glapi/primitive.h"
 #include "common/glstate/view_change.h"
@@ -64,16 +65,25 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
         counts_.push_back(static_cast<GLsizei>(elements));
     };
     const auto all = static_cast<std::uint32_t>(count);
-    if (!name || !may_be_cut(mode)) return add(0, all);
+    const auto range = std::exchange(execution_.pieces, {});
+    if (!name || (range.behind == 0 && !may_be_cut(mode))) return add(0, all);
     const auto found = execution_.session.objects.get<DrawPieces>(name);
     if (!found) return execution_.refuse(found.error().message);
     const DrawPieces& pieces = **found;
     if ((all + pieces.cut().step - 1) / pieces.cut().step != pieces.boxes().size())
         return execution_.refuse("pieces of another draw");
+    const auto count_of_pieces = static_cast<std::uint32_t>(pieces.boxes().size());
+    const std::uint32_t behind = range.behind != 0 ? std::min(range.behind, count_of_pieces) : count_of_pieces;
+    const std::uint32_t begin = std::min(range.first, behind), offset = begin * pieces.cut().step;
+    const auto add_wanted = [&](auto&& wanted) {
+        glstate::for_each_run(pieces.cut(), pieces.boxes().subspan(begin, behind - begin), all - offset, wanted,
+                              [&](std::uint32_t first, std::uint32_t elements) { add(first + offset, elements); });
+    };
+    const auto any = [](const geom::Box&) { return true; };
     const LayerGeometry& layer = block_.target->geometry();
     auto projection = this->projection();
-    if (!projection) return add(0, all);
-    if (layer.view && projection->anywhere_in_views()) return add(0, all);
+    if (!projection || !may_be_cut(mode)) return add_wanted(any);
+    if (layer.view && projection->anywhere_in_views()) return add_wanted(any);
     if (const auto change = layer.view ? glstate::view_change(*layer.view, projection->camera) : std::nullopt)
         projection = glstate::seen(*projection, glstate::narrow(*change));
     const geom::PixelRect area = layer.window_area();
@@ -81,7 +91,7 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
         const auto rect = glstate::project(*projection, box, mode);
         return !rect || rect->overlaps(area);
     };
-    glstate::for_each_run(pieces.cut(), pieces.boxes(), all, wanted, add);
+    add_wanted(wanted);
 }
 
 void ArrayDrawCommands::count_runs() {

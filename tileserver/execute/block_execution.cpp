@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/execute/block_execution.h"
 
+#include <algorithm>
 #include <bit>
 #include <optional>
 #include <utility>
@@ -19,9 +20,12 @@ std::uint64_t BlockExecution::begin(std::uint64_t tiles, std::size_t bytes) {
     for_right_eye_ = false;
     SurfaceReplica* surface = execution_.draw_surface;
     std::uint64_t present = execution_.draw_framebuffer != nullptr ? tiles & (~tiles + 1) : 0;
+    for_others_ = surface != nullptr && (tiles >> wire::kPartialSlot & 1) != 0;
+    if (for_others_) tiles = std::max<std::uint64_t>(tiles & ~(std::uint64_t{1} << wire::kPartialSlot), 1);
     for (std::uint64_t rest = tiles; rest != 0 && surface != nullptr; rest &= rest - 1) {
         const auto slot = static_cast<unsigned>(std::countr_zero(rest));
-        if (surface->layer(slot) != nullptr) present |= std::uint64_t{1} << slot;
+        const bool there = for_others_ ? slot < surface->partials().size() : surface->layer(slot) != nullptr;
+        if (there) present |= std::uint64_t{1} << slot;
     }
     // With no layer at all the block is still decoded once, for what it leaves in the soft context.
     if (present == 0) present = tiles & (~tiles + 1);
@@ -33,6 +37,7 @@ void BlockExecution::begin_tile(unsigned slot) {
     if (block_.tile_open) finish_tile();
     block_.tile_open = true;
     block_.slot = slot;
+    execution_.pieces = {};
     mark_time();
     block_.trail.clear();
     block_.raster = glstate::el::raster_position::ref(execution_.context->state);
@@ -42,7 +47,7 @@ void BlockExecution::begin_tile(unsigned slot) {
 
 /// What is drawn to framebuffer objects is for no tile.
 void BlockExecution::mark_time() {
-    const bool for_tile = execution_.draw_framebuffer == nullptr && block_.slot != wire::kOffscreenSlot;
+    const bool for_tile = execution_.draw_framebuffer == nullptr && !for_others_ && block_.slot < wire::kTileSlots;
     execution_.node.tile_times.mark(for_tile ? std::optional(block_.slot) : std::nullopt);
 }
 
@@ -58,12 +63,20 @@ void BlockExecution::note_switch() {
 }
 
 void BlockExecution::find_target() {
-    SurfaceReplica* surface = execution_.draw_surface;
-    block_.layer =
-        surface != nullptr ? surface->layer(block_.slot, for_right_eye_ ? geom::Eye::right : geom::Eye::left) : nullptr;
+    block_.layer = find_layer();
     block_.target = block_.layer;
     if (execution_.draw_framebuffer != nullptr) block_.target = execution_.updated(execution_.draw_framebuffer);
     block_.draws = block_.target != nullptr && block_.target->complete();
+}
+
+Layer* BlockExecution::find_layer() const {
+    SurfaceReplica* surface = execution_.draw_surface;
+    if (surface == nullptr) return nullptr;
+    if (!for_others_) return surface->layer(block_.slot, for_right_eye_ ? geom::Eye::right : geom::Eye::left);
+    if (block_.slot >= surface->partials().size()) return nullptr;
+    auto& partial = surface->partials()[block_.slot];
+    partial.drawn = true;
+    return partial.layer.get();
 }
 
 bool BlockExecution::draws_right_only() const {

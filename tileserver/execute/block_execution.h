@@ -35,6 +35,7 @@ private:
     void mark_time();
     /// Of the open tile; it draws if that can be drawn to.
     void find_target();
+    Layer* find_layer() const;
     void enter_tile();
     void finish_tile();
     bool draws_right_only() const;
@@ -46,6 +47,7 @@ private:
     OpenBlock& block_;
     unsigned first_slot_ = 0;  // of the block's tiles: in one of them primitives are counted
     bool for_right_eye_ = false;
+    bool for_others_ = false;  ///< it draws what other nodes show
 };
 
 }  // namespace wall::tileserver

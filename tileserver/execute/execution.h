@@ -58,6 +58,11 @@ struct Execution {
     glapi::Refusal& refusal;
     RenderModes modes;
 
+    /// Of the next draw's pieces those that are drawn here; `behind` 0: all.
+    struct PieceRange {
+        std::uint32_t first = 0, behind = 0;
+    };
+
     // Of the batch.
     ContextId context_id;
     SoftContext* context = nullptr;
@@ -65,6 +70,7 @@ struct Execution {
     SurfaceReplica* draw_surface = nullptr;
     Framebuffer* draw_framebuffer = nullptr;
     bool targets_known = false;
+    PieceRange pieces;
     Slice slice;
     std::uint64_t told = 0;  ///< commands in it
 };

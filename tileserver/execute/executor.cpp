@@ -61,6 +61,8 @@ Result<void> Executor::run_batch(std::span<const std::byte> payload) {
 Result<bool> Executor::go_on() {
     if (program.trying()) program.go_on();
     if (program.trying()) return false;
+    if (partial.merging()) partial.go_on();
+    if (partial.merging()) return false;
     if (run.compiling()) run.go_on();
     if (draw.calling()) draw.go_on();
     if (run.compiling() || draw.calling()) return false;
@@ -99,7 +101,7 @@ bool Executor::divisible() {
 
 glapi::Pause Executor::should_pause(std::size_t told) {
     execution_.told += told;
-    if (program.trying()) return glapi::Pause::now;
+    if (program.trying() || partial.merging()) return glapi::Pause::now;
     if (!run.list_is_full() && !draw.calling() && !execution_.slice_is_over())
         return closely_ ? glapi::Pause::closely : glapi::Pause::go_on;
     return divisible() ? glapi::Pause::now : glapi::Pause::soon;

@@ -35,6 +35,7 @@
 #include "tileserver/execute/instanced_draw_commands.h"
 #include "tileserver/execute/map_commands.h"
 #include "tileserver/execute/object_commands.h"
+#include "tileserver/execute/partial_commands.h"
 #include "tileserver/execute/pipeline_commands.h"
 #include "tileserver/execute/program_commands.h"
 #include "tileserver/execute/query_commands.h"
@@ -71,8 +72,8 @@ public:
     Result<bool> run_slice(const Slice& slice);
     /// Commands in the last slice.
     std::uint64_t told() const { return execution_.told; }
-    /// The next slice would do nothing: a shader is still on trial.
-    bool waits() const { return program.waits(); }
+    /// The next slice would do nothing: a shader is still on trial, or partial pictures have not come.
+    bool waits() const { return program.waits() || partial.waits(); }
     /// Both, to the end.
     Result<void> run_batch(std::span<const std::byte> payload);
     void present(SurfaceId surface_id, std::uint32_t frame) { surface.present(surface_id, frame); }
@@ -118,6 +119,7 @@ public:
     QueryCommands query{execution_};
     MapCommands map{execution_};
     SyncCommands sync{execution_};
+    PartialCommands partial{execution_};
 
     std::uint64_t begin_block(std::uint64_t tiles, std::size_t bytes) { return blocks_.begin(tiles, bytes); }
     void begin_tile(unsigned slot) { blocks_.begin_tile(slot); }

@@ -79,7 +79,7 @@ void SurfaceCommands::SurfaceViews(SurfaceId id, std::span<const std::byte> byte
         geom::EyeViewValues values;
         std::memcpy(&slot, bytes.data() + at, sizeof slot);
         std::memcpy(values.data(), bytes.data() + at + sizeof slot, sizeof values);
-        if (slot >= wire::kOffscreenSlot) return execution_.refuse("a view of no tile");
+        if (slot >= wire::kTileSlots) return execution_.refuse("a view of no tile");
         const auto view = geom::eye_view_of_values(values);
         if (const auto* wrong = std::get_if<const char*>(&view))
             return execution_.refuse(std::string("a view has ") + *wrong);

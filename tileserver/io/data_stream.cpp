@@ -57,7 +57,8 @@ asio::awaitable<void> DataStream::run() {
     auto done = co_await greet();
     const bool admitted = done.has_value();
     while (done && !handed_over_) {
-        done = co_await take_batches();
+        if (partials_) done = co_await take_partials();
+        else done = co_await take_batches();
         if (!may_go_on()) break;
         log::info("stream_lost stream={} session={} reason={}", id_.value, session_.value,
                   log::quoted(done.error().message));
@@ -92,7 +93,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
     if (hello.version() != glapi::kStreamVersion)
         co_return wall::fail("the program's WallGL library is of another version than this node");
     session_ = SessionId(hello.session());
-    const auto admission = co_await find_admission(session_, hello.ticket());
+    const auto admission = co_await find_admission(hello);
     if (!admission) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
     if (const auto wait = host_.shut_out(session_))
         co_return wall::fail("session " + std::to_string(hello.session()) +
@@ -101,6 +102,15 @@ asio::awaitable<Result<void>> DataStream::greet() {
     if (hello.rank() >= std::max(1u, admission->membership.members))
         co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " +
                              std::to_string(hello.rank()));
+    if (hello.partials()) {
+        partials_ = true;
+        source_.set_limits(wire::kMaxFramePayload, wire::kMaxFramePayload);
+        host_.stream_open(id_);
+        transport_ = connection_.transport();
+        log::info("partials_open stream={} session={} transport={}", id_.value, session_.value,
+                  log::quoted(transport_));
+        co_return Result<void>{};
+    }
     rank_ = hello.rank();
     if (hello.has_resume()) {
         const auto handed = hand_over(hello);
@@ -138,17 +148,37 @@ bool DataStream::comes_from(const std::string& machine) const {
     return machine.empty() || (key && key->bytes() == machine);
 }
 
-asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId session, const std::string& given) {
+/// A program comes from its machine, partial pictures from machines of nodes.
+bool DataStream::may_come(const Admission& known, const proto::DataHello& hello) const {
+    if (!SessionId(hello.session()) || !tls::same_secret(known.ticket, hello.ticket())) return false;
+    if (!hello.partials()) return comes_from(known.key);
+    const auto& key = connection_.peer_key();
+    return !key || std::ranges::count(known.peer_keys, key->bytes()) > 0;
+}
+
+asio::awaitable<std::optional<Admission>> DataStream::find_admission(const proto::DataHello& hello) {
     const auto until = std::chrono::steady_clock::now() + kTicketLimit;
     for (;;) {
-        if (const Admission* known = host_.admission(session))
-            co_return session&& tls::same_secret(known->ticket, given) && comes_from(known->key) ? std::optional(*known)
-                                                                                                 : std::nullopt;
+        if (const Admission* known = host_.admission(SessionId(hello.session())))
+            co_return may_come(*known, hello) ? std::optional(*known) : std::nullopt;
         if (std::chrono::steady_clock::now() > until || closing_ || is_gone(connection_.descriptor()))
             co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
         co_await timer_.async_wait(net::kTuple);
     }
+}
+
+asio::awaitable<Result<void>> DataStream::take_partials() {
+    while (!closing_) {
+        auto frame = co_await source_.next();
+        if (!frame) co_return tl::unexpected(frame.error());
+        if (frame->kind != wire::FrameKind::partial)
+            co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
+        const auto& payload = frame->payload;
+        auto taken = host_.render().take_partial(session_, {payload.begin(), payload.end()});
+        if (!taken) co_return taken;
+    }
+    co_return Result<void>{};
 }
 
 asio::awaitable<Result<void>> DataStream::take_batches() {

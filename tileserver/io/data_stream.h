@@ -38,6 +38,7 @@ struct Admission {
     std::string ticket;
     Membership membership;
     std::string key{};  ///< fingerprint of the machine that it runs on, which alone may come; empty: any
+    std::vector<std::string> peer_keys{};  ///< of machines whose nodes may bring partial pictures
     SessionQuota quota{};
 };
 
@@ -120,9 +121,12 @@ private:
     void forget_sent(std::uint64_t received);
     asio::awaitable<void> hold_to_bandwidth(std::size_t bytes);
     /// Nothing if there is none for that ticket.
-    asio::awaitable<std::optional<Admission>> find_admission(SessionId session, const std::string& ticket);
+    asio::awaitable<std::optional<Admission>> find_admission(const proto::DataHello& hello);
+    /// Of a node that brings partial pictures. Ends with the reason.
+    asio::awaitable<Result<void>> take_partials();
     asio::awaitable<void> write_queue();
     bool comes_from(const std::string& machine) const;
+    bool may_come(const Admission& known, const proto::DataHello& hello) const;
 
     StreamHost& host_;
     StreamId id_;
@@ -142,6 +146,7 @@ private:
     std::uint64_t forgotten_ = 0;                                  // counted frames before those of sent_
     std::size_t outgoing_bytes_ = 0, sent_bytes_ = 0;
 
+    bool partials_ = false;           // it brings partial pictures, and no commands
     bool resumable_ = false;          // it may go on over another connection
     bool handed_over_ = false;        // its connection is an earlier stream's now
     std::optional<Connection> next_;  // on which it goes on

@@ -120,6 +120,7 @@ NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig&
       started_us_(microseconds_since_1970()),
       described_(std::move(described)),
       parts_(executor),
+      partial_links_(executor, keys_.tls),
       tile_streams_(executor, [this](PictureId stream, Parts parts) {
           parts_.send({PartsOf::Kind::stream, stream}, std::move(parts));
       }) {}
@@ -168,6 +169,7 @@ void NodeServer::stop() {
     turn_timer_.cancel();
     watch_timer_.cancel();
     if (link_) link_->close();
+    partial_links_.close();
     for (const auto& [id, stream] : std::map(streams_)) stream->close();
 }
 
@@ -236,6 +238,7 @@ const Admission* NodeServer::admission(SessionId session) const {
 void NodeServer::end_session(SessionId session) {
     admissions_.erase(session);
     shut_out_.forget(session);
+    partial_links_.forget(session);
     render_->remove_session(session);
     for (const auto& [id, stream] : std::map(streams_))
         if (stream->session() == session) stream->close();
@@ -381,6 +384,7 @@ void NodeServer::handle(const proto::Envelope& envelope) {
     switch (envelope.message_case()) {
         case Case::kNodeWelcome: return welcome(envelope.node_welcome());
         case Case::kTicket: return admit(envelope.ticket());
+        case Case::kPartialPeers: return set_peers(envelope.partial_peers());
         case Case::kSessionEnd: return end_session(SessionId(envelope.session_end().session()));
         case Case::kPresent:
             return render_->present(SessionId(envelope.present().session()), SurfaceId(envelope.present().surface()),
@@ -437,9 +441,24 @@ void NodeServer::admit(const proto::Ticket& ticket) {
     if (known != admissions_.end() && known->second.ticket != ticket.ticket()) end_session(SessionId(ticket.session()));
     const auto members = std::min(ticket.members(), wire::kMaxMembers);
     const auto quota = quota_of(ticket);
-    admissions_[SessionId(ticket.session())] = {
-        ticket.ticket(), {members, {ticket.left().begin(), ticket.left().end()}}, ticket.key(), quota};
+    admissions_[SessionId(ticket.session())] = {ticket.ticket(),
+                                                {members, {ticket.left().begin(), ticket.left().end()}},
+                                                ticket.key(),
+                                                {ticket.peer_keys().begin(), ticket.peer_keys().end()},
+                                                quota};
     render_->set_quota(SessionId(ticket.session()), quota);
+}
+
+void NodeServer::set_peers(const proto::PartialPeers& peers) {
+    std::map<NodeIndex, PartialPeer> nodes;
+    for (const auto& node : peers.nodes()) {
+        auto address = net::Address::parse(node.address());
+        const auto key = tls::Fingerprint::from_bytes(node.key());
+        if (!address || (!key && !node.key().empty())) continue;
+        nodes.emplace(NodeIndex(node.node()),
+                      PartialPeer{std::move(*address), node.ticket(), key ? std::optional(*key) : std::nullopt});
+    }
+    partial_links_.set_peers(SessionId(peers.session()), std::move(nodes));
 }
 
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {
@@ -529,6 +548,12 @@ void NodeServer::picture(Picture picture) {
         const auto id = picture.request.id;
         if (picture.request.stream) tile_streams_.picture(std::move(picture));
         else parts_.send({PartsOf::Kind::snapshot, id}, snapshot_parts(std::move(picture)));
+    });
+}
+
+void NodeServer::partial(SessionId session, NodeIndex to, std::vector<std::byte> message) {
+    post([this, session, to, message = std::move(message)]() mutable {
+        partial_links_.send(session, to, std::move(message));
     });
 }
 

@@ -20,6 +20,7 @@
 #include "tileserver/io/burst_watch.h"
 #include "tileserver/io/data_stream.h"
 #include "tileserver/io/part_sender.h"
+#include "tileserver/io/partial_links.h"
 #include "tileserver/io/shut_out.h"
 #include "tileserver/io/tile_streams.h"
 #include "tileserver/io/walld_watch.h"
@@ -99,6 +100,7 @@ private:
     void failed(StreamId stream, SessionId session, std::string reason) override;
     void ended(StreamId stream, std::string reason) override;
     void picture(Picture picture) override;
+    void partial(SessionId session, NodeIndex to, std::vector<std::byte> message) override;
     void tiles_taken(std::uint32_t version) override;
     void stats(const RenderStats& stats) override;
     void scaled(const ScaledTile& tile) override;
@@ -124,6 +126,7 @@ private:
     void walld_answers();
     void welcome(const proto::NodeWelcome& welcome);
     void admit(const proto::Ticket& ticket);
+    void set_peers(const proto::PartialPeers& peers);
     void end_session(SessionId session);
     void to_walld(const proto::Envelope& envelope);
     void post(std::function<void()> task);
@@ -164,6 +167,7 @@ private:
     bool refused_ = false;  // by walld, on this link
     std::chrono::steady_clock::time_point last_stats_ = std::chrono::steady_clock::now();
     PartSender parts_;
+    PartialLinks partial_links_;
     TileStreams tile_streams_;
     std::unique_ptr<RenderThread> render_;  // last: it is gone before what it reports to
 };

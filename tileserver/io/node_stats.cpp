@@ -48,6 +48,11 @@ void fill_stats(const RenderStats& stats, proto::NodeStats& out) {
         row.set_queued_bytes(session.queued_bytes);
         row.set_memory_bytes(session.memory_bytes);
         row.set_objects(session.objects);
+        row.set_partial_bytes(session.work.partial_bytes);
+        row.set_partials_merged(session.work.partials_merged);
+        row.set_partials_missed(session.work.partials_missed);
+        row.set_partial_ns(nanoseconds(session.work.partial));
+        row.set_partial_wait_ns(nanoseconds(session.work.partial_wait));
     }
     fill_objects(stats.objects, *out.mutable_objects());
     for (const auto& [slot, time] : stats.tiles) {

@@ -47,12 +47,14 @@ bool needs_shown_frame(std::span<const std::byte> payload) {
 class RenderThread::Loop {
 public:
     /// `screens`: that the tiles are shown on; `trials`: of shaders; null: none.
-    Loop(const Gl& gl, NodeEvents& events, TurnBoard& board, TileScreens* screens, CompileTrials* trials)
+    Loop(const Gl& gl, NodeEvents& events, TurnBoard& board, TileScreens* screens, CompileTrials* trials,
+         PartialBox& partials)
         : events_(events), board_(board), driver_(gl), node_(driver_), compositor_(node_, [this](const StackEntry& e) {
               return find(e);
           }) {
         node_.present_at_once = true;
         node_.trials = trials;
+        node_.partials = &partials;
         if (screens != nullptr)
             output_.emplace(node_, compositor_, *screens,
                             ScreenOutput::Events{[this](const ScaledTile& tile) { events_.scaled(tile); },
@@ -77,6 +79,9 @@ public:
             frame_ended(surface);
             loop_.events_.drawn(id_, surface, frame);
             loop_.events_.rendered(session_.id(), surface, frame);
+        }
+        void partial(NodeIndex to, std::vector<std::byte> message) override {
+            loop_.events_.partial(session_.id(), to, std::move(message));
         }
         void frame_ended(SurfaceId surface) { frame_limit_.frame(surface, Clock::now()); }
 
@@ -279,6 +284,7 @@ public:
     }
     void remove_session(SessionId session) {
         quotas_.erase(session);
+        node_.partials->forget(session);
         node_.damage +=
             std::erase_if(streams_, [session](const auto& entry) { return entry.second->session().id() == session; });
     }
@@ -455,7 +461,7 @@ void RenderThread::run(const OpenBackend& open, std::string backend_name,
     if (auto current = (*backend)->make_current(); !current) return started(tl::unexpected(current.error()));
     Gl gl;
     gl.load([&](const char* function) { return (*backend)->get_proc_address(function); });
-    Loop loop(gl, events_, board_, (*backend)->screens(), trials_.get());
+    Loop loop(gl, events_, board_, (*backend)->screens(), trials_.get(), partials_);
     continued::hear();  // behind what the driver has made of threads
     started(Started{query_caps(gl), std::move(backend_name)});
     serve(loop);
@@ -490,6 +496,12 @@ void RenderThread::wake() {
         awake_ = true;
     }
     wake_.notify_one();
+}
+
+Result<void> RenderThread::take_partial(SessionId session, std::vector<std::byte> message) {
+    auto put = partials_.put(session, std::move(message));
+    if (put) wake();
+    return put;
 }
 
 void RenderThread::add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue,

@@ -22,6 +22,7 @@
 #include "tileserver/gpu/caps.h"
 #include "tileserver/gpu/tile_windows.h"
 #include "tileserver/kms/kms_backend.h"
+#include "tileserver/partials/partial_box.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/compositor.h"
 #include "tileserver/render/running_turn.h"
@@ -63,6 +64,8 @@ public:
     /// Nothing was wrong with the stream itself, but it cannot go on.
     virtual void ended(StreamId stream, std::string reason) = 0;
     virtual void picture(Picture picture) = 0;
+    /// For another node of the session.
+    virtual void partial(SessionId session, NodeIndex to, std::vector<std::byte> message) = 0;
     /// set_tiles() is done.
     virtual void tiles_taken(std::uint32_t version) = 0;
     virtual void stats(const RenderStats& stats) = 0;  ///< about once a second
@@ -138,6 +141,8 @@ public:
     void watch(const PictureRequest& request, std::chrono::microseconds interval);
     void unwatch(PictureId stream);
     void ready(PictureId stream, bool even_unchanged);
+    /// Another node has sent a partial picture of one of the session's windows; the error says what is wrong with it.
+    Result<void> take_partial(SessionId session, std::vector<std::byte> message);
     /// A queue has got a batch.
     void wake();
 
@@ -155,6 +160,7 @@ private:
     std::condition_variable wake_;
     std::vector<std::function<void(Loop&)>> tasks_;
     bool awake_ = false, stop_ = false;
+    PartialBox partials_;
     std::unique_ptr<CompileTrials> trials_;  // after what it wakes
     std::thread thread_;
 };

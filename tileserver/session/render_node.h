@@ -18,6 +18,7 @@ namespace wall::tileserver {
 
 struct SoftContext;
 class CompileTrials;
+class PartialBox;
 
 /// What the executors of a node share.
 struct RenderNode {
@@ -32,6 +33,7 @@ struct RenderNode {
     std::set<SessionId> returning;                   ///< whoever coordinates does not know them yet
     const SoftContext* current = nullptr;            ///< whose state the driver holds; only compared, it may be gone
     CompileTrials* trials = nullptr;                 ///< of shaders; null: the driver compiles them at once
+    PartialBox* partials = nullptr;                  ///< that other nodes have sent; null: none can come
     bool orders_triangles = false;                   ///< of meshes that stay, where nobody sees it (index_orders.h)
     Work ended;                                      ///< of sessions that are gone
 

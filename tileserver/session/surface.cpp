@@ -60,6 +60,7 @@ LayerGeometry SurfaceReplica::geometry_on(const Tile& tile, const geom::Rect& ar
 bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
     const bool same_size = place.window_width == place_.window_width && place.window_height == place_.window_height;
     place_ = place;
+    partials_.clear();  // they lie relative to it
     const Views views = std::exchange(next_views_, {});
     for (const geom::Eye eye : eyes())
         if (!(place.whole_window || place.shown_whole) || !same_size) layers_[index(wire::kOffscreenSlot, eye)].reset();
@@ -68,7 +69,7 @@ bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& t
     reaches_tiles_ = false;
     for (const Tile& tile : tiles) {
         const geom::Rect area = place.offscreen ? geom::Rect{} : geom::intersect(place.rect, tile.rect);
-        if (area.empty() || tile.slot >= wire::kOffscreenSlot) continue;
+        if (area.empty() || tile.slot >= wire::kTileSlots) continue;
         reaches_tiles_ = true;
         if (place.shown_whole) continue;
         const LayerGeometry geometry = geometry_on(tile, area, place, views);
@@ -81,7 +82,7 @@ bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& t
         }
         pair_eyes(tile.slot);
     }
-    for (std::uint32_t slot = 0; slot < wire::kOffscreenSlot; ++slot)
+    for (std::uint32_t slot = 0; slot < wire::kTileSlots; ++slot)
         for (const geom::Eye eye : eyes())
             if (const std::size_t at = index(slot, eye); !wanted[at] && layers_[at]) replace(at, nullptr);
     return affordable;
@@ -92,7 +93,7 @@ bool SurfaceReplica::gather_whole() {
     for (const geom::Eye eye : eyes()) {
         Layer* whole = layer(wire::kOffscreenSlot, eye);
         if (whole == nullptr) return false;
-        for (std::uint32_t slot = 0; slot < wire::kOffscreenSlot; ++slot)
+        for (std::uint32_t slot = 0; slot < wire::kTileSlots; ++slot)
             if (const Layer* tile = layers_[index(slot, eye)].get(); tile != nullptr && !tile->geometry().scaled())
                 whole->take_content(*tile);
     }
@@ -102,6 +103,23 @@ bool SurfaceReplica::gather_whole() {
 const Layer* SurfaceReplica::shown_layer(const Tile& tile) const {
     const std::size_t at = index(tile.slot, tile.eye);
     return (replaced_[at] ? older_ : layers_)[at].get();
+}
+
+bool SurfaceReplica::open_partials(std::vector<Partial> wanted) {
+    const LayerFormat format{.double_buffered = false, .alpha = format_.layer.alpha, .srgb = format_.layer.srgb};
+    bool affordable = true;
+    for (Partial& partial : wanted) {
+        const auto same = std::ranges::find(partials_, partial.area, &Partial::area);
+        if (same != partials_.end() && same->layer) partial.layer = std::move(same->layer);
+        if (partial.layer) continue;
+        const geom::Rect& area = partial.area;
+        const geom::Rect canvas{place_.rect.x + area.x, place_.rect.bottom() - area.bottom(), area.width, area.height};
+        const LayerGeometry geometry{place_.rect, canvas, place_.window_width, place_.window_height, {}};
+        affordable = affordable && pixels_taken(geometry, format) <= budget_.left;
+        if (affordable) partial.layer = std::make_unique<Layer>(gl_, flip_y_, geometry, format, budget_);
+    }
+    partials_ = std::move(wanted);
+    return affordable;
 }
 
 Layer* SurfaceReplica::layer(std::uint32_t slot, geom::Eye eye) {
@@ -119,7 +137,7 @@ Layer* SurfaceReplica::layer(std::uint32_t slot, geom::Eye eye) {
 
 Layer* SurfaceReplica::whole_layer(geom::Eye eye) {
     if (place_.offscreen || place_.shown_whole) return layer(wire::kOffscreenSlot, eye);
-    for (std::uint32_t slot = 0; slot < wire::kOffscreenSlot; ++slot)
+    for (std::uint32_t slot = 0; slot < wire::kTileSlots; ++slot)
         if (Layer* tile = layers_[index(slot, eye)].get(); tile != nullptr &&
                                                            tile->geometry().area == tile->geometry().surface &&
                                                            !tile->geometry().scaled() && !tile->geometry().view)
@@ -129,7 +147,7 @@ Layer* SurfaceReplica::whole_layer(geom::Eye eye) {
 
 bool SurfaceReplica::on_tiles() const {
     if (place_.shown_whole) return reaches_tiles_;
-    return std::any_of(layers_.begin(), layers_.begin() + wire::kOffscreenSlot,
+    return std::any_of(layers_.begin(), layers_.begin() + wire::kTileSlots,
                        [](const auto& layer) { return layer != nullptr; });
 }
 

@@ -15,8 +15,11 @@ struct Work {
     std::uint64_t object_bytes = 0;                     ///< of all other commands
     std::uint64_t array_elements = 0;                   ///< of draws from buffers, as often as a tile drew them
     std::uint64_t context_switches = 0;                 ///< blocks that found another context in the driver
-    Clock::duration decode{};                           ///< taking batches apart and calling the driver
-    Clock::duration render{};                           ///< waiting until the driver has ended a frame or an answer
+    std::uint64_t partial_bytes = 0, partials_merged = 0, partials_missed = 0;  ///< of sort-last: sent, and come
+    Clock::duration partial{};       ///< reading, coding and merging partial pictures
+    Clock::duration partial_wait{};  ///< waiting for them
+    Clock::duration decode{};        ///< taking batches apart and calling the driver
+    Clock::duration render{};        ///< waiting until the driver has ended a frame or an answer
 
     Work& operator+=(const Work& other) {
         frames += other.frames;
@@ -27,6 +30,11 @@ struct Work {
         object_bytes += other.object_bytes;
         array_elements += other.array_elements;
         context_switches += other.context_switches;
+        partial_bytes += other.partial_bytes;
+        partials_merged += other.partials_merged;
+        partials_missed += other.partials_missed;
+        partial += other.partial;
+        partial_wait += other.partial_wait;
         decode += other.decode;
         render += other.render;
         return *this;

@@ -108,6 +108,7 @@ std::map<std::string, std::string> environment_for(const Launch& launch, const V
     if (!launch.name.empty()) out["WALLGL_NAME"] = launch.name;
     if (launch.hold) out["WALLGL_HOLD"] = "1";
     if (!launch.stereo.empty()) out["WALLGL_STEREO"] = launch.stereo;
+    if (launch.sort_last) out["WALLGL_SORT_LAST"] = "1";
     if (!launch.camera.empty()) out["WALLGL_CAMERA"] = launch.camera;
     return out;
 }

@@ -17,6 +17,7 @@ struct Launch {
     std::string name;
     bool hold = false;
     std::string stereo;  ///< "PERCENT", "PERCENT,DISTANCE" or nothing
+    bool sort_last = false;
     std::string camera;  ///< names of uniforms, with commas between them, or nothing
 };
 

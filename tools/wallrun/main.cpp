@@ -88,6 +88,10 @@ int main(int argc, char** argv) {
                    "for tiles that look elsewhere or are for one eye: the uniform in which the program's shaders have "
                    "their projection, or projection and view, where that is not found in them")
         ->type_name("NAME[,NAME...]");
+    app.add_flag(
+        "--sort-last", launch.sort_last,
+        "its geometry may be dealt to the wall's nodes, each of which draws a part of it, and their pictures be "
+        "put together by depth: for programs that have more geometry than one node can draw");
     auto* processes =
         app.add_option("--parallel", parallel, "a parallel program: so many processes draw into its windows together")
             ->type_name("N");

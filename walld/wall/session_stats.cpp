@@ -19,6 +19,11 @@ void add(proto::SessionStats& sum, const proto::SessionStats& more) {
     sum.set_queued_bytes(sum.queued_bytes() + more.queued_bytes());
     sum.set_memory_bytes(sum.memory_bytes() + more.memory_bytes());
     sum.set_objects(sum.objects() + more.objects());
+    sum.set_partial_bytes(sum.partial_bytes() + more.partial_bytes());
+    sum.set_partials_merged(sum.partials_merged() + more.partials_merged());
+    sum.set_partials_missed(sum.partials_missed() + more.partials_missed());
+    sum.set_partial_ns(sum.partial_ns() + more.partial_ns());
+    sum.set_partial_wait_ns(sum.partial_wait_ns() + more.partial_wait_ns());
 }
 
 }  // namespace
@@ -31,14 +36,20 @@ std::map<SessionId, proto::SessionStats> stats_by_session(const proto::NodeStats
     return out;
 }
 
-std::map<SessionId, HeldOnNode> most_held(const Wall& wall) {
-    std::map<SessionId, HeldOnNode> out;
+std::map<SessionId, HeldOnNodes> held_on_nodes(const Wall& wall) {
+    constexpr double kNanosecond = 1e-9;
+    std::map<SessionId, HeldOnNodes> out;
     for (const auto& node : wall.nodes()) {
         if (!node.up) continue;
         for (const auto& [session, stats] : stats_by_session(node.stats)) {
-            auto& most = out[session];
-            most.memory_bytes = std::max(most.memory_bytes, stats.memory_bytes());
-            most.objects = std::max(most.objects, stats.objects());
+            auto& held = out[session];
+            held.memory_bytes = std::max(held.memory_bytes, stats.memory_bytes());
+            held.objects = std::max(held.objects, stats.objects());
+            held.partials.bytes += stats.partial_bytes();
+            held.partials.merged += stats.partials_merged();
+            held.partials.missed += stats.partials_missed();
+            held.partials.seconds += kNanosecond * static_cast<double>(stats.partial_ns());
+            held.partials.wait_seconds += kNanosecond * static_cast<double>(stats.partial_wait_ns());
         }
     }
     return out;

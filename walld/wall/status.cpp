@@ -210,10 +210,10 @@ json group_json(const ParallelGroup& group) {
     return {{"name", group.name()}, {"size", group.size()}, {"members", std::move(members)}};
 }
 
-static json session_json(const Wall& wall, SessionId id, const std::map<SessionId, HeldOnNode>& most) {
+static json session_json(const Wall& wall, SessionId id, const std::map<SessionId, HeldOnNodes>& most) {
     const auto& session = wall.sessions().at(id);
     const auto found = most.find(id);
-    const auto held = found == most.end() ? HeldOnNode() : found->second;
+    const auto held = found == most.end() ? HeldOnNodes() : found->second;
     auto surfaces = json::array();
     for (const auto& key : wall.stacking()) {
         if (key.session == id) surfaces.push_back(surface_json(wall, key));
@@ -229,6 +229,13 @@ static json session_json(const Wall& wall, SessionId id, const std::map<SessionI
              {"recorded", session.recorder.has_value()},
              {"weight", session.weight},
              {"stereo", stereo_json(session.stereo)},
+             {"sort_last", session.sort_last},
+             {"partials",
+              {{"bytes", held.partials.bytes},
+               {"merged", held.partials.merged},
+               {"missed", held.partials.missed},
+               {"seconds", held.partials.seconds},
+               {"wait_seconds", held.partials.wait_seconds}}},
              {"memory_bytes", held.memory_bytes},
              {"objects", held.objects},
              {"traffic", traffic_json(session.traffic)},
@@ -237,11 +244,11 @@ static json session_json(const Wall& wall, SessionId id, const std::map<SessionI
     return out;
 }
 
-json session_json(const Wall& wall, SessionId id) { return session_json(wall, id, most_held(wall)); }
+json session_json(const Wall& wall, SessionId id) { return session_json(wall, id, held_on_nodes(wall)); }
 
 json sessions_json(const Wall& wall) {
     auto out = json::array();
-    const auto most = most_held(wall);
+    const auto most = held_on_nodes(wall);
     for (const auto& [id, session] : wall.sessions()) out.push_back(session_json(wall, id, most));
     return out;
 }

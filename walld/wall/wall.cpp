@@ -76,6 +76,7 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
         if (anew || (!same && !has_ticket(hello, id, session.tickets[index]))) session.tickets.erase(index);
         hand_out_ticket(id, session, index);
         out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
+        tell_peers(id, session);
     }
     out_.to_node(index, stacking_message(index));
     for_each_surface([&](const SurfaceKey& key, SurfaceEntry& surface) {
@@ -167,6 +168,7 @@ proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) c
     up.set_ticket(ticket);
     up.set_incarnation(nodes_[node].incarnation);
     up.set_key(nodes_[node].hello.key());
+    up.set_renders(nodes_[node].config->roles.render && nodes_reach_each_other());
     return up;
 }
 
@@ -220,6 +222,7 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     session.name = hello.name().substr(0, kMaxText);
     session.owner = std::move(owner);
     session.held = hello.hold();
+    session.sort_last = hello.sort_last() && !session.group;
     if (hello.has_stereo() && !session.group) session.stereo = checked(hello.stereo());
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
     session.fullscreen = hello.fullscreen();
@@ -234,6 +237,7 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
         hand_out_ticket(id, session, i);
     }
     welcome_client(id, session, hello.group().rank());
+    tell_peers(id, session);
     return id;
 }
 
@@ -257,7 +261,35 @@ void Wall::hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node) 
         message.set_members(session.group->size());
         for (const Rank rank : session.group->left()) message.add_left(rank);
     }
+    if (session.sort_last)
+        for (const Node& peer : nodes_)
+            if (peer.up && peer.config->roles.render && !peer.hello.key().empty())
+                message.add_peer_keys(peer.hello.key());
     out_.to_node(node, make(&proto::Envelope::mutable_ticket, message));
+}
+
+/// They are all on this machine, or all have keys and ports for others.
+bool Wall::nodes_reach_each_other() const {
+    const auto has_key = [](const Node& node) { return !node.hello.key().empty(); };
+    const auto up = std::ranges::count_if(nodes_, &Node::up);
+    const auto keys = std::ranges::count_if(nodes_, [&](const Node& node) { return node.up && has_key(node); });
+    return keys == 0 || keys == up;
+}
+
+/// Whoever draws for others is told where they are, and they, by their tickets, who may come. The program hears whether
+/// they can.
+void Wall::tell_peers(SessionId id, SessionEntry& session) {
+    if (!session.sort_last) return;
+    proto::PartialPeers peers;
+    peers.set_session(id.value);
+    for (const NodeIndex i : nodes_.ids())
+        if (nodes_[i].up && session.tickets.contains(i)) *peers.add_nodes() = node_up_message(i, session.tickets.at(i));
+    for (const NodeIndex i : nodes_.ids()) {
+        if (!nodes_[i].up || !session.tickets.contains(i)) continue;
+        hand_out_ticket(id, session, i);
+        out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(i, session.tickets.at(i))));
+        if (nodes_[i].config->roles.render) out_.to_node(i, make(&proto::Envelope::mutable_partial_peers, peers));
+    }
 }
 
 void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank, const proto::Resume& again) {

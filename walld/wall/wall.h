@@ -140,7 +140,8 @@ struct SessionEntry {
     std::optional<geom::Rect> rect;  ///< asked for; fullscreen: the canvas
     bool fullscreen = false;
     bool held = false;
-    std::string fault;  ///< what a node said against its stream
+    bool sort_last = false;  ///< its geometry may be dealt to nodes
+    std::string fault;       ///< what a node said against its stream
     std::uint32_t weight = wire::kUsualWeight;
     std::optional<proto::Stereo> stereo;  ///< of its pictures for two eyes; none: both see the same
     bool silent = false;                  ///< its link may be dead, or somebody has stopped it
@@ -333,6 +334,8 @@ private:
     /// `again`: what a member of a parallel program says that comes again.
     void welcome_client(SessionId id, const SessionEntry& session, Rank rank, const proto::Resume& again = {});
     void hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node);
+    bool nodes_reach_each_other() const;
+    void tell_peers(SessionId id, SessionEntry& session);
     proto::Quota quota_of_programs() const;
     void end_who_has_too_much(NodeIndex node);
     std::set<NodeIndex> nodes_under(const geom::Rect& rect) const;

@@ -128,6 +128,24 @@ TEST(WallConfig, ANodeSaysWhetherItOrdersTriangles) {
               "wall.toml:3: 'triangle_order' is 'yes': expected \"auto\", \"on\" or \"off\"");
 }
 
+TEST(WallConfig, ANodeSaysWhatItDoesForProgramsThatAreDealt) {
+    const auto node = [](const std::string& line, bool tile = true) {
+        return parse_config("[[node]]\nname='n'\n" + line + (tile ? "\n[[node.tile]]\nname='t'\nrect=[0,0,1,1]\n" : ""),
+                            "wall.toml");
+    };
+    const auto usual = node(""), shows = node("role = 'display'"), draws = node("role = ['render']", false);
+    ASSERT_TRUE(usual && shows && draws);
+    EXPECT_EQ(usual->nodes[0].roles, (Roles{.render = true, .display = true}));
+    EXPECT_EQ(node("role = ['display', 'render']")->nodes[0], usual->nodes[0]);
+    EXPECT_EQ(shows->nodes[0].roles, (Roles{.render = false, .display = true}));
+    EXPECT_EQ(draws->nodes[0].roles, (Roles{.render = true, .display = false}));
+    EXPECT_EQ(node("role = 'draw'").error().message,
+              "wall.toml:3: 'role' is 'draw': expected \"render\", \"display\" or both in a list");
+    EXPECT_EQ(node("role = []").error().message, "wall.toml:3: 'role' is empty: expected \"render\" or \"display\"");
+    EXPECT_EQ(node("role = 'render'").error().message,
+              "wall.toml:3: node 'n' has tiles: expected \"display\" among its roles");
+}
+
 TEST(WallConfig, ATileIsHeadlessOrAWindow) {
     const auto config = parse_config(R"(
 [[node]]

@@ -137,6 +137,7 @@ public:
     void picture(Picture picture) override {
         note([&] { pictures_[picture.request.id.value] = std::move(picture.rgba); });
     }
+    void partial(SessionId, NodeIndex, std::vector<std::byte>) override {}
     void tiles_taken(std::uint32_t) override {}
     void stats(const RenderStats&) override {
         note([&] { ++stats_; });

@@ -68,6 +68,10 @@ public:
         : session(node.driver, id, group, rank), executor(node, session, *this) {}
     void reply(RequestId request, std::vector<std::byte> answer) override { replies[request] = std::move(answer); }
     void frame_rendered(SurfaceId surface, std::uint32_t frame) override { frames.push_back({surface.value, frame}); }
+    void partial(NodeIndex to, std::vector<std::byte> message) override {
+        partials.emplace_back(to, std::move(message));
+    }
+    std::vector<std::pair<NodeIndex, std::vector<std::byte>>> partials;
 
     Result<void> run(const Batch& batch) {
         const auto payload = batch.payload();

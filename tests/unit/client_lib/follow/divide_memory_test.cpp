@@ -94,7 +94,8 @@ private:
     NodeUpdater updater_{nodes_};
     HiddenParts hidden_{nodes_, open_};
     Sight sight_;
-    Followers followers_{nodes_, updater_, hidden_, sight_};
+    Dealer dealer_{nodes_, updater_, false};
+    Followers followers_{nodes_, updater_, hidden_, dealer_, sight_};
     ClientSurface surface_{SurfaceId(1), {}};
     glstate::State state_;
     glstate::Projection projection_;

@@ -82,8 +82,9 @@ protected:
     OpenSurfaces open;
     NodeUpdater updater{nodes};
     HiddenParts hidden{nodes, open};
+    Dealer dealer{nodes, updater, false};
     Sight sight;
-    Followers followers{nodes, updater, hidden, sight};
+    Followers followers{nodes, updater, hidden, dealer, sight};
     ClientSurface surface{SurfaceId(1), {}};
     glstate::State state;
     UseStamp used;

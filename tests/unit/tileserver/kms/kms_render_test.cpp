@@ -29,6 +29,7 @@ public:
     void failed(StreamId, SessionId, std::string) override {}
     void ended(StreamId, std::string) override {}
     void picture(Picture) override {}
+    void partial(SessionId, NodeIndex, std::vector<std::byte>) override {}
     void tiles_taken(std::uint32_t) override {}
     void stats(const RenderStats&) override {}
     void scaled(const ScaledTile&) override { ++scaled_tiles; }

@@ -138,10 +138,10 @@ TEST_F(AWallWithQuotas, KnowsWhatAProgramHasWhereItHasMost) {
     const auto session = open("alice");
     report(kLeft, {{session, 7}});
     report(kRight, {{session, 5}});
-    EXPECT_EQ(most_held(wall_).at(session).memory_bytes, 7 * kMebibyte);
-    EXPECT_EQ(most_held(wall_).at(session).objects, 7u);
+    EXPECT_EQ(held_on_nodes(wall_).at(session).memory_bytes, 7 * kMebibyte);
+    EXPECT_EQ(held_on_nodes(wall_).at(session).objects, 7u);
     wall_.node_leaves(kLeft, now_);
-    EXPECT_EQ(most_held(wall_).at(session).memory_bytes, 5 * kMebibyte);
+    EXPECT_EQ(held_on_nodes(wall_).at(session).memory_bytes, 5 * kMebibyte);
 }
 
 TEST_F(AWallWithQuotas, KnowsHowFarANodesClockIsAhead) {

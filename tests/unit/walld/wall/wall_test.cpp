@@ -148,6 +148,34 @@ TEST_F(TheWall, ATicketIsWithTheNodeAndTheClientAndDiffersByNode) {
     EXPECT_EQ(last_to_node(kRight).ticket().ticket(), welcome.nodes(1).ticket());
 }
 
+TEST_F(TheWall, TellsNodesOfASortLastProgramOfEachOther) {
+    join("left");
+    join("right");
+    const auto usual = open();
+    EXPECT_TRUE(std::ranges::none_of(out_.nodes[kLeft], &proto::Envelope::has_partial_peers));
+    proto::ClientHello hello;
+    hello.set_version(wire::kProtocolVersion);
+    hello.set_sort_last(true);
+    const auto id = open(hello);
+    EXPECT_NE(id, usual);
+    const auto& welcome = out_.clients[id][0].client_welcome();
+    const auto told = [&](NodeIndex node) {
+        const auto& heard = out_.nodes[node];
+        const auto last =
+            std::find_if(heard.rbegin(), heard.rend(), [](const auto& m) { return m.has_partial_peers(); });
+        return last == heard.rend() ? proto::PartialPeers() : last->partial_peers();
+    };
+    for (const NodeIndex node : {kLeft, kRight}) {
+        ASSERT_EQ(told(node).nodes_size(), 2);
+        EXPECT_EQ(told(node).session(), id.value);
+        for (int i = 0; i < 2; ++i) EXPECT_EQ(told(node).nodes(i).ticket(), welcome.nodes(i).ticket());
+    }
+    EXPECT_TRUE(welcome.nodes(0).renders());
+    wall_.node_leaves(kRight, now_);
+    join("right", 7);
+    EXPECT_NE(told(kLeft).nodes(1).ticket(), welcome.nodes(1).ticket()) << "it is another process";
+}
+
 TEST_F(TheWall, PlacesWindowsSideBySideOnTopOfEachOther) {
     join("left");
     const auto id = open();

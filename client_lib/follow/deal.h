@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Sort-last: geometry whose order cannot matter is dealt to the nodes of the session that render, each of which draws
+// what it gets of the whole window, for nobody to be seen; what they have drawn is composed by depth into the layers
+// that tiles show (A3.3, docs/sort-last.md). Everything else is drawn there as ever, behind what was composed until
+// then, so a frame is any number of deals with other commands between them.
+//
+// Each node gets one run of a frame's draws, in the order of the nodes, so that of two fragments of the same depth the
+// one wins that the depth function lets win. Where runs end comes from what the frame before has cost.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "client_lib/geometry/dealable.h"
+#include "client_lib/geometry/target_layers.h"
+#include "common/base/ids.h"
+
+namespace wall::client {
+
+/// How a window's geometry is dealt; of ClientSurface.
+struct Deal {
+    /// Draws since the last composition.
+    struct Hand {
+        NodeIndex node;
+        bool drew = false;
+    };
+    std::vector<Hand> hands;  ///< by node, in the order in which they draw
+    /// Layers that what was dealt will be composed in; a block for them names them by their places here.
+    std::vector<TargetLayer> receivers;
+    bool open = false;                 ///< something was dealt and not composed
+    bool chosen = false;               ///< `hands` are this frame's
+    std::uint32_t depth_func = 0;      ///< of what is open
+    std::uint32_t sequence = 0;        ///< of the last composition
+    double cost = 0, cost_before = 0;  ///< dealt in this frame, and in the one before
+    MarkingState::Ids marking{};
+};
+
+}  // namespace wall::client

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/follow/dealer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "client_lib/follow/surface.h"
+#include "client_lib/link/parallel.h"
+#include "client_lib/process/options.h"
+#include "common/wire/limits.h"
+#include "gen/glapi/wire.gen.h"
+
+namespace wall::client {
+namespace {
+
+/// Of a window; so many a node reads back and sends.
+constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 24;
+
+/// Nothing is behind this depth, which the depth function decides.
+std::uint32_t farthest(std::uint32_t depth_func) { return depth_func == GL_LESS || depth_func == GL_LEQUAL ? 1 : 0; }
+
+}  // namespace
+
+bool Dealer::may_deal(const ClientSurface& surface) const {
+    const SurfaceFormat& format = surface.options.format;
+    const SurfaceLayout& layout = surface.layout;
+    const bool plain = format.double_buffered && format.depth_bits != 0 && format.samples == 0 && !format.stereo;
+    const bool as_it_is = layout.rect.width == static_cast<int>(layout.width) &&
+                          layout.rect.height == static_cast<int>(layout.height) && layout.views.empty();
+    return wanted_ && !options().broadcast && !parallel() && surface.options.visible && !surface.whole &&
+           plain && as_it_is && std::uint64_t{layout.width} * layout.height <= kMostPixels;
+}
+
+/// Who draws in this frame.
+void Dealer::choose(ClientSurface& surface) {
+    Deal& deal = surface.deal;
+    deal.chosen = true;
+    deal.hands.clear();
+    if (!may_deal(surface)) return;
+    for (const auto& node : nodes_)
+        if (node->info.renders && node->answers() && !node->slow) deal.hands.push_back({node->index});
+}
+
+/// A layer of the whole window has all of it, whatever is to be seen there.
+std::vector<TargetLayer> Dealer::receivers_of(const ClientSurface& surface) const {
+    std::vector<TargetLayer> out;
+    const auto width = surface.layout.width, height = surface.layout.height;
+    for (const TargetLayer& layer : surface.layout.layers) {
+        const Node& node = nodes_[layer];
+        if (!node.alive() || node.records()) continue;
+        out.push_back(layer);
+        if (layer.is_whole_window()) out.back().pixels = {0, 0, static_cast<int>(width), static_cast<int>(height)};
+    }
+    return out;
+}
+
+std::span<const Dealer::Dealt> Dealer::deal(const DrawSource& source, const Reach& reach, double elements,
+                                            std::uint32_t pieces) {
+    dealt_.clear();
+    ClientSurface* const surface = source.draw.dealt_surface();
+    if (surface == nullptr || elements <= 0) return {};
+    Deal& deal = surface->deal;
+    if (!deal.chosen) choose(*surface);
+    if (deal.hands.empty() || source.objects.writes()) return {};
+    const auto func = composed_by(source.state);
+    if (!func) return {};
+    if (deal.open && deal.depth_func != *func) compose(*surface);
+    if (!deal.open) deal.receivers = receivers_of(*surface);
+    if (deal.receivers.empty() || deal.receivers.size() > wire::kTileSlots) return {};
+    std::uint64_t mask = 0;
+    for (std::size_t i = 0; i < deal.receivers.size(); ++i)
+        if (reach.touches(deal.receivers[i])) mask |= std::uint64_t{1} << i;
+    cut(deal, mask != 0 ? mask | kPartialBit : 0, elements, pieces);
+    deal.open = true;
+    deal.depth_func = *func;
+    deal.cost += elements;
+    return dealt_;
+}
+
+/// A frame is taken to cost what the one before did. A node that has gone in mid-frame draws no more of it.
+void Dealer::cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t pieces) {
+    const auto hands = static_cast<double>(deal.hands.size());
+    const double whole = deal.cost_before > 0 ? deal.cost_before : pieces > 1 ? elements : 0;
+    const auto hand_at = [&](double cost) {
+        return whole > 0 ? std::min(std::floor(cost / whole * hands), hands - 1) : 0;
+    };
+    const auto add = [&](double hand, std::uint32_t first, std::uint32_t behind) {
+        dealt_.push_back({&nodes_[deal.hands[static_cast<std::size_t>(hand)].node], mask, first, behind});
+    };
+    const double last = hand_at(deal.cost + elements);
+    if (pieces <= 1 || hand_at(deal.cost) == last) return add(hand_at(deal.cost), 0, 0);
+    const double each = elements / pieces;
+    for (std::uint32_t first = 0; first < pieces;) {
+        const double hand = hand_at(deal.cost + first * each);
+        const double end = ((hand + 1) * whole / hands - deal.cost) / each;  // of this node's run, in pieces
+        const auto behind = hand == hands - 1
+                                ? pieces
+                                : static_cast<std::uint32_t>(std::clamp(std::ceil(end), first + 1.0, 1.0 * pieces));
+        add(hand, first, behind);
+        first = behind;
+    }
+}
+
+wire::PackBuffer& Dealer::prepare(Node& node, const DrawSource& source, const Needs& needs) {
+    ClientSurface& surface = *source.draw.dealt_surface();
+    Deal& deal = surface.deal;
+    const MarkingState marking(source.state, deal.marking);
+    wire::PackBuffer& buffer = updater_.prepare(node, source, needs);
+    const auto hand = std::ranges::find(deal.hands, node.index, &Deal::Hand::node);
+    if (hand != deal.hands.end() && !hand->drew) {
+        hand->drew = true;
+        pack_begin(buffer, surface);
+    }
+    return buffer;
+}
+
+void Dealer::compose(const DrawTarget& target) {
+    if (ClientSurface* const surface = target.dealt_surface()) compose(*surface);
+}
+
+void Dealer::compose(ClientSurface& surface) {
+    Deal& deal = surface.deal;
+    if (!std::exchange(deal.open, false)) return;
+    ++deal.sequence;
+    std::vector<std::uint32_t> from;
+    for (Deal::Hand& hand : deal.hands) {
+        if (!std::exchange(hand.drew, false) || !nodes_[hand.node].alive()) continue;
+        from.push_back(hand.node.value);
+        Node& node = nodes_[hand.node];
+        glapi::pack::PartialSend(nodes_.batch(node, node.batch_context), surface.id, deal.sequence, hand.node.value);
+        nodes_.send(node);
+    }
+    if (from.empty()) return;
+    const DrawTarget target(surface);
+    for (const auto& [index, slots] : nodes_touched(deal.receivers, std::nullopt)) {
+        Node& node = nodes_[index];
+        if (!node.alive() || !target.goes_to(node)) continue;
+        wire::PackBuffer& buffer = nodes_.batch(node, node.batch_context);
+        target.describe_to(node);
+        glapi::pack::PartialMerge(buffer, surface.id, deal.sequence, deal.depth_func, static_cast<std::uint32_t>(slots),
+                                  static_cast<std::uint32_t>(slots >> 32), std::as_bytes(std::span(from)));
+    }
+}
+
+void Dealer::pack_begin(wire::PackBuffer& buffer, const ClientSurface& surface) {
+    std::vector<std::uint32_t> words;
+    for (const TargetLayer& layer : surface.deal.receivers)
+        for (const auto word :
+             {layer.node.value, layer.slot, static_cast<std::uint32_t>(layer.pixels.x),
+              static_cast<std::uint32_t>(layer.pixels.y), static_cast<std::uint32_t>(layer.pixels.width),
+              static_cast<std::uint32_t>(layer.pixels.height)})
+            words.push_back(word);
+    glapi::pack::PartialBegin(buffer, surface.id, farthest(surface.deal.depth_func), std::as_bytes(std::span(words)));
+}
+
+void Dealer::finish_frame(ClientSurface& surface) {
+    Deal& deal = surface.deal;
+    deal.chosen = false;
+    deal.cost_before = std::exchange(deal.cost, 0);
+}
+
+}  // namespace wall::client

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Deals the geometry of windows to nodes, and has it composed (deal.h). The session's mutex is held.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "client_lib/follow/draw_source.h"
+#include "client_lib/follow/node_updater.h"
+#include "client_lib/follow/nodes.h"
+#include "client_lib/geometry/needs.h"
+#include "common/wire/limits.h"
+
+namespace wall::client {
+
+/// In a Block's mask: its other bits number layers that other nodes show.
+inline constexpr std::uint64_t kPartialBit = std::uint64_t{1} << wire::kPartialSlot;
+
+class Dealer {
+public:
+    /// Both outlive it. `wanted`: programs ask for it (WALLGL_SORT_LAST).
+    Dealer(Nodes& nodes, NodeUpdater& updater, bool wanted) : nodes_(nodes), updater_(updater), wanted_(wanted) {}
+
+    /// One node's part of a draw.
+    struct Dealt {
+        Node* node = nullptr;
+        std::uint64_t mask = 0;               ///< of its Block; 0: none of the layers shows it
+        std::uint32_t first = 0, behind = 0;  ///< of its pieces; 0 and 0: it draws all of it
+    };
+    /// Who draws this, in order; nobody: it is not dealt. `elements`: about so many; 0: it is no geometry. `pieces`: as
+    /// in Drawn. Good until the next call.
+    std::span<const Dealt> deal(const DrawSource& source, const Reach& reach, double elements,
+                                std::uint32_t pieces = 0);
+    /// The node's batch behind everything that drawing this needs there.
+    wire::PackBuffer& prepare(Node& node, const DrawSource& source, const Needs& needs);
+    /// What was dealt is in the layers of tiles before anything else happens to them. `target` may be anything.
+    void compose(const DrawTarget& target);
+    void compose(ClientSurface& surface);
+    /// A frame of the window is over, composed before.
+    void finish_frame(ClientSurface& surface);
+
+private:
+    bool may_deal(const ClientSurface& surface) const;
+    void choose(ClientSurface& surface);
+    std::vector<TargetLayer> receivers_of(const ClientSurface& surface) const;
+    void cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t pieces);
+    static void pack_begin(wire::PackBuffer& buffer, const ClientSurface& surface);
+
+    Nodes& nodes_;
+    NodeUpdater& updater_;
+    const bool wanted_;
+    std::vector<Dealt> dealt_;  ///< used again and again
+};
+
+}  // namespace wall::client

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""Programs whose geometry is dealt to nodes (docs/sort-last.md): their pictures are those that they have without it, for
+any number of nodes that draw, and again when one of them is gone."""
+from __future__ import annotations
+
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+import numpy as np  # noqa: E402
+from compare import load_png  # noqa: E402
+from planned_wall import PlannedWall  # noqa: E402
+from wall import build_folder  # noqa: E402
+from xserver import XServer  # noqa: E402
+
+QUIET = {"LP_NUM_THREADS": "0"}
+SIZE = 320, 240  # of a tile
+MARCH = (build_folder() / "examples" / "march", "--cells", "24", "--size", "600x400")
+GEARS = ("glxgears", "-geometry", "600x400")
+FRAME = 4
+
+
+def plan_of(renderers: int) -> dict:
+    """Two nodes that show two tiles each, and some that have none."""
+    width, height = SIZE
+    shows = {f"shows{row}": {f"t{column}{row}": (column * width, row * height, width, height) for column in range(2)}
+             for row in range(2)}
+    return shows | {f"draws{i}": {} for i in range(renderers)}
+
+
+def keys_of(renderers: int) -> dict[str, str]:
+    return {f"shows{row}": 'role = "display"' for row in range(2)} | {
+        f"draws{i}": 'role = ["render"]' for i in range(renderers)}
+
+
+class ProgramsThatAreDealt(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.x = cls.enterClassContext(XServer())
+
+    def wall_of(self, renderers: int) -> PlannedWall:
+        return self.enterContext(PlannedWall(plan_of(renderers), node_keys=keys_of(renderers), environment=QUIET,
+                                             swap_timeout_ms=5000, die_with_parent=True))
+
+    def start(self, wall: PlannedWall, *command: object, sort_last: bool = True) -> tuple[subprocess.Popen, int]:
+        line = wall.wallrun(*command, rect=(13, 9, 600, 400), hold=True, sort_last=sort_last)
+        app = wall.run_line(line, env=self.x.environment(), stdout=subprocess.DEVNULL)
+        return app, wall.wait_session(app)
+
+    def picture(self, wall: PlannedWall, session: int, frame: int) -> np.ndarray:
+        wall.step(session, frame)
+        wall.wait(session, frame)
+        path = wall.folder / "wall.png"
+        wall.screenshot(path)
+        return load_png(path)[:, :, :3]
+
+    def partials(self, wall: PlannedWall, session: int) -> dict:
+        return next(s for s in wall.sessions() if s["id"] == session)["partials"]
+
+    def test_their_pictures_are_the_same_by_any_number_of_nodes(self) -> None:
+        with PlannedWall(plan_of(0), environment=QUIET, swap_timeout_ms=5000) as plain:
+            app, session = self.start(plain, *MARCH, sort_last=False)
+            expected = self.picture(plain, session, FRAME)
+            self.assertEqual(self.partials(plain, session)["merged"], 0)
+        self.assertGreater((expected != expected[0, 0]).any(axis=2).mean(), 0.05, "there is something to be seen")
+        for renderers in (1, 2, 4, 8):
+            with self.subTest(renderers=renderers), PlannedWall(
+                    plan_of(renderers), node_keys=keys_of(renderers), environment=QUIET, swap_timeout_ms=5000) as wall:
+                app, session = self.start(wall, *MARCH)
+                given = self.picture(wall, session, FRAME)
+                self.assertEqual(int((given != expected).any(axis=2).sum()), 0)
+                wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
+                self.assertEqual(self.partials(wall, session)["missed"], 0)
+
+    def test_a_node_that_draws_may_go(self) -> None:
+        wall = self.wall_of(2)
+        app, session = self.start(wall, *MARCH)
+        before = self.picture(wall, session, 2)
+        wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
+        wall.daemons["draws0"].kill()
+        wall.daemons["draws0"].wait()
+        wall.hold(session, False)
+        wall.wait(session, 10)
+        wall.hold(session)
+        after = self.picture(wall, session, 1)
+        self.assertEqual(before.shape, after.shape)
+        frame = next(s for s in wall.sessions() if s["id"] == session)["surfaces"][0]["frame"]
+        with PlannedWall(plan_of(0), environment=QUIET, swap_timeout_ms=5000) as plain:
+            _, other = self.start(plain, *MARCH, sort_last=False)
+            expected = self.picture(plain, other, frame)
+        self.assertEqual(int((after != expected).any(axis=2).sum()), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Group [partial]: pictures that several nodes of a sort-last session draw parts of (A3.3). What a node draws for
+// others lies in a layer of its own, whose stencil buffer tells what was drawn; it is read back and sent, and merged
+// into the layers of tiles pixel by pixel, exactly as if its geometry had been drawn there. Render thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tileserver/execute/execution.h"
+#include "tileserver/partials/partial_format.h"
+
+namespace wall::tileserver {
+
+class PartialCommands {
+public:
+    /// `execution` outlives it.
+    explicit PartialCommands(Execution& execution) : execution_(execution) {}
+
+    void PartialBegin(SurfaceId surface, std::uint32_t far, std::span<const std::byte> receivers);
+    void PartialSend(SurfaceId surface, std::uint32_t sequence, std::uint32_t from);
+    void PartialRange(std::uint32_t first, std::uint32_t behind);
+    void PartialMerge(SurfaceId surface, std::uint32_t sequence, GLenum depth_func, std::uint32_t slots_low,
+                      std::uint32_t slots_high, std::span<const std::byte> nodes);
+
+    /// A merge is not done.
+    bool merging() const { return merge_.has_value(); }
+    /// It would have to wait.
+    bool waits() const;
+    /// Merges, if it need not wait.
+    void go_on();
+
+private:
+    using Clock = std::chrono::steady_clock;
+    struct Merge {
+        SurfaceId surface;
+        std::uint32_t sequence = 0;
+        GLenum depth_func = GL_LESS;
+        std::vector<PartialKey> keys;  ///< by slot, in the order of drawing
+        Clock::time_point begun;
+    };
+
+    SurfaceReplica* known_surface(SurfaceId id);
+    std::vector<std::byte> take_partial(SurfaceReplica::Partial& partial, const PartialKey& key) const;
+    void merge_into(Layer& layer, std::span<const PartialKey> keys, GLenum depth_func);
+
+    Execution& execution_;
+    std::optional<Merge> merge_;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Partial pictures that other nodes have sent, until the stream of their session comes to where they are merged.
+// Thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "common/base/result.h"
+#include "tileserver/partials/partial_format.h"
+
+namespace wall::tileserver {
+
+class PartialBox {
+public:
+    /// Of one session: more is not taken. Programs are at most two frames ahead.
+    static constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+
+    /// One that comes too late is dropped.
+    Result<void> put(SessionId session, std::vector<std::byte> message);
+    /// All of these have come.
+    bool has(SessionId session, std::span<const PartialKey> keys) const;
+    /// Nothing: it has not come.
+    std::optional<std::vector<std::byte>> take(SessionId session, const PartialKey& key);
+    /// The window's partial pictures up to that sequence are not waited for any more.
+    void close(SessionId session, SurfaceId surface, std::uint32_t sequence);
+    void forget(SessionId session);
+
+private:
+    struct OfSession {
+        std::map<PartialKey, std::vector<std::byte>> messages;
+        std::map<SurfaceId, std::uint32_t> closed;  ///< sequences up to this
+        std::size_t bytes = 0;
+    };
+
+    mutable std::mutex mutex_;
+    std::map<SessionId, OfSession> sessions_;
+};
+
+}  // namespace wall::tileserver

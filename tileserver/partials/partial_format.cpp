@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/partials/partial_format.h"
+
+#include <lz4.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <string>
+
+#include "common/wire/limits.h"
+
+namespace wall::tileserver {
+namespace {
+
+constexpr std::size_t kWord = sizeof(std::uint32_t);
+enum Field : std::size_t {
+    surface,
+    sequence,
+    from,
+    slot,
+    x,
+    y,
+    width,
+    height,
+    top_row_first,
+    codec,
+    plain_bytes,
+    zero
+};
+static_assert((zero + 1) * kWord == kPartialHeader);
+
+std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t index) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, bytes.data() + index * kWord, kWord);
+    return word;
+}
+
+void set_word(std::span<std::byte> bytes, std::size_t index, std::uint32_t word) {
+    std::memcpy(bytes.data() + index * kWord, &word, kWord);
+}
+
+bool is_drawn(std::uint32_t depth_stencil) { return (depth_stencil & 0xff) != 0; }
+
+std::vector<PixelRun> runs_of(const PixelBlock& block) {
+    std::vector<PixelRun> runs;
+    const std::size_t all = block.depths.size();
+    for (std::size_t at = 0; at < all;) {
+        const std::size_t begin = at;
+        while (at < all && !is_drawn(block.depths[at])) ++at;
+        const std::size_t first = at;
+        while (at < all && is_drawn(block.depths[at])) ++at;
+        if (at > first)
+            runs.push_back({static_cast<std::uint32_t>(first - begin), static_cast<std::uint32_t>(at - first)});
+    }
+    return runs;
+}
+
+/// The header of a message whose content has `plain` bytes, and room for so many coded ones.
+std::vector<std::byte> begin_message(const PartialKey& key, const geom::Rect& area, bool top_first, std::size_t plain) {
+    std::vector<std::byte> out(kPartialHeader);
+    set_word(out, surface, key.surface.value);
+    set_word(out, sequence, key.sequence);
+    set_word(out, from, key.from.value);
+    set_word(out, slot, key.slot);
+    set_word(out, x, static_cast<std::uint32_t>(area.x));
+    set_word(out, y, static_cast<std::uint32_t>(area.y));
+    set_word(out, width, static_cast<std::uint32_t>(area.width));
+    set_word(out, height, static_cast<std::uint32_t>(area.height));
+    set_word(out, top_row_first, top_first ? 1 : 0);
+    set_word(out, codec, static_cast<std::uint32_t>(PartialCodec::none));
+    set_word(out, plain_bytes, static_cast<std::uint32_t>(plain));
+    return out;
+}
+
+template <class T>
+void append(std::vector<std::byte>& out, std::span<const T> values) {
+    const auto bytes = std::as_bytes(values);
+    out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+Error wrong(const std::string& what) { return Error{"a partial picture: " + what}; }
+
+/// Nothing is there that the header does not allow.
+Result<std::vector<std::byte>> plain_of(std::span<const std::byte> message) {
+    const auto coded = message.subspan(kPartialHeader);
+    const std::size_t plain = word_at(message, plain_bytes);
+    if (plain > wire::kMaxFramePayload) return tl::unexpected(wrong("larger than it may be"));
+    switch (static_cast<PartialCodec>(word_at(message, codec))) {
+        case PartialCodec::none:
+            if (coded.size() != plain) return tl::unexpected(wrong("not as long as it says"));
+            return std::vector<std::byte>(coded.begin(), coded.end());
+        case PartialCodec::lz4: {
+            std::vector<std::byte> out(plain);
+            const int got =
+                LZ4_decompress_safe(reinterpret_cast<const char*>(coded.data()), reinterpret_cast<char*>(out.data()),
+                                    static_cast<int>(coded.size()), static_cast<int>(plain));
+            if (got != static_cast<int>(plain)) return tl::unexpected(wrong("its lz4 is damaged"));
+            return out;
+        }
+    }
+    return tl::unexpected(wrong("its codec is not known here"));
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& block, PartialCodec by) {
+    const std::vector<PixelRun> runs = runs_of(block);
+    const std::size_t pixels = std::accumulate(runs.begin(), runs.end(), std::size_t{0},
+                                               [](std::size_t n, const PixelRun& r) { return n + r.take; });
+    const std::size_t plain = 2 * kWord + runs.size() * sizeof(PixelRun) + 2 * pixels * kWord;
+    auto out = begin_message(key, block.area, block.top_row_first, plain);
+    out.reserve(kPartialHeader + plain);
+    const std::uint32_t counts[] = {static_cast<std::uint32_t>(runs.size()), static_cast<std::uint32_t>(pixels)};
+    append(out, std::span<const std::uint32_t>(counts));
+    append(out, std::span<const PixelRun>(runs));
+    for (const auto* values : {&block.colors, &block.depths}) {
+        std::size_t at = 0;
+        for (const PixelRun& run : runs) {
+            at += run.skip;
+            append(out, std::span<const std::uint32_t>(*values).subspan(at, run.take));
+            at += run.take;
+        }
+    }
+    return by == PartialCodec::none ? out : recode_partial(out, by);
+}
+
+std::vector<std::byte> recode_partial(std::span<const std::byte> message, PartialCodec by) {
+    std::vector<std::byte> out(message.begin(), message.end());
+    if (by == static_cast<PartialCodec>(word_at(message, codec))) return out;
+    const auto plain = plain_of(message);
+    if (!plain) return out;
+    out.resize(kPartialHeader);
+    set_word(out, codec, static_cast<std::uint32_t>(by));
+    if (by == PartialCodec::none) {
+        out.insert(out.end(), plain->begin(), plain->end());
+        return out;
+    }
+    const int bound = LZ4_compressBound(static_cast<int>(plain->size()));
+    out.resize(kPartialHeader + static_cast<std::size_t>(bound));
+    const int bytes = LZ4_compress_default(reinterpret_cast<const char*>(plain->data()),
+                                           reinterpret_cast<char*>(out.data() + kPartialHeader),
+                                           static_cast<int>(plain->size()), bound);
+    out.resize(kPartialHeader + static_cast<std::size_t>(bytes));
+    return out;
+}
+
+Result<PartialKey> key_of_partial(std::span<const std::byte> message) {
+    if (message.size() < kPartialHeader) return tl::unexpected(wrong("shorter than its header"));
+    return PartialKey{SurfaceId(word_at(message, surface)), word_at(message, sequence),
+                      NodeIndex(word_at(message, from)), word_at(message, slot)};
+}
+
+Result<Partial> decode_partial(std::span<const std::byte> message) {
+    const auto key = key_of_partial(message);
+    if (!key) return tl::unexpected(key.error());
+    const std::uint32_t columns = word_at(message, width), rows = word_at(message, height);
+    if (columns == 0 || rows == 0 || columns > wire::kMaxSurfaceExtent || rows > wire::kMaxSurfaceExtent ||
+        std::uint64_t{columns} * rows > kMaxPartialPixels)
+        return tl::unexpected(wrong("of an area that none can have"));
+    const auto plain = plain_of(message);
+    if (!plain) return tl::unexpected(plain.error());
+    if (plain->size() < 2 * kWord) return tl::unexpected(wrong("it has no counts"));
+    const std::uint64_t runs = word_at(*plain, 0), pixels = word_at(*plain, 1), area = std::uint64_t{columns} * rows;
+    if (runs > area || pixels > area || plain->size() != 2 * kWord + runs * sizeof(PixelRun) + 2 * pixels * kWord)
+        return tl::unexpected(wrong("its counts do not fit its length"));
+    Partial out{*key,
+                {static_cast<std::int32_t>(word_at(message, x)), static_cast<std::int32_t>(word_at(message, y)),
+                 static_cast<std::int32_t>(columns), static_cast<std::int32_t>(rows)},
+                word_at(message, top_row_first) != 0,
+                std::vector<PixelRun>(runs),
+                std::vector<std::uint32_t>(pixels),
+                std::vector<std::uint32_t>(pixels)};
+    const std::byte* at = plain->data() + 2 * kWord;
+    const auto take = [&at](auto& values) {
+        const std::size_t bytes = values.size() * sizeof values[0];
+        if (bytes != 0) std::memcpy(values.data(), at, bytes);
+        at += bytes;
+    };
+    take(out.runs);
+    take(out.colors);
+    take(out.depths);
+    std::uint64_t end = 0, taken = 0;
+    for (const PixelRun& run : out.runs) {
+        end += std::uint64_t{run.skip} + run.take;
+        taken += run.take;
+        if (end > area || taken > pixels) return tl::unexpected(wrong("its runs lead out of it"));
+    }
+    if (taken != pixels) return tl::unexpected(wrong("its runs are not those of its pixels"));
+    return out;
+}
+
+namespace {
+
+/// `nearer(theirs, ours)`, of 24 bits each.
+template <class Nearer>
+void merge_run(std::size_t count, const std::uint32_t* colors, const std::uint32_t* depths, std::uint32_t* our_colors,
+               std::uint32_t* our_depths, Nearer&& nearer) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t theirs = depths[i] >> 8, ours = our_depths[i] >> 8;
+        const bool wins = nearer(theirs, ours);
+        our_colors[i] = wins ? colors[i] : our_colors[i];
+        our_depths[i] = wins ? (depths[i] & 0xffffff00) | (our_depths[i] & 0xff) : our_depths[i];
+    }
+}
+
+template <class Nearer>
+void merge_all(const Partial& partial, PixelBlock& into, const Nearer& nearer) {
+    const auto columns = static_cast<std::size_t>(partial.area.width),
+               rows = static_cast<std::size_t>(partial.area.height);
+    const bool upside_down = partial.top_row_first != into.top_row_first;
+    std::size_t at = 0, pixel = 0;
+    for (const PixelRun& run : partial.runs) {
+        at += run.skip;
+        for (std::size_t left = run.take; left != 0;) {
+            const std::size_t row = at / columns, column = at % columns;
+            const std::size_t count = upside_down ? std::min(left, columns - column) : left;
+            const std::size_t to = upside_down ? (rows - 1 - row) * columns + column : at;
+            merge_run(count, &partial.colors[pixel], &partial.depths[pixel], &into.colors[to], &into.depths[to],
+                      nearer);
+            at += count;
+            pixel += count;
+            left -= count;
+        }
+    }
+}
+
+}  // namespace
+
+bool merge(const Partial& partial, GLenum depth_func, PixelBlock& into) {
+    if (partial.area != into.area) return false;
+    switch (depth_func) {
+        case GL_LESS: merge_all(partial, into, std::less<>()); return true;
+        case GL_LEQUAL: merge_all(partial, into, std::less_equal<>()); return true;
+        case GL_GREATER: merge_all(partial, into, std::greater<>()); return true;
+        case GL_GEQUAL: merge_all(partial, into, std::greater_equal<>()); return true;
+        default: return false;
+    }
+}
+
+}  // namespace wall::tileserver
