@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "client_lib/follow/surface.h"
-#include "client_lib/link/parallel.h"
 #include "client_lib/process/options.h"
 #include "common/wire/limits.h"
 #include "gen/glapi/wire.gen.h"
@@ -28,11 +27,11 @@ bool Dealer::may_deal(const ClientSurface& surface) const {
     const bool plain = format.double_buffered && format.depth_bits != 0 && format.samples == 0 && !format.stereo;
     const bool as_it_is = layout.rect.width == static_cast<int>(layout.width) &&
                           layout.rect.height == static_cast<int>(layout.height) && layout.views.empty();
-    return wanted_ && !options().broadcast && !parallel() && surface.options.visible && !surface.whole &&
-           plain && as_it_is && std::uint64_t{layout.width} * layout.height <= kMostPixels;
+    return wanted_ && !options().broadcast && surface.options.visible && !surface.whole && plain && as_it_is &&
+           std::uint64_t{layout.width} * layout.height <= kMostPixels;
 }
 
-/// Who draws in this frame.
+/// Who draws in this frame. Each process of a parallel program has one node.
 void Dealer::choose(ClientSurface& surface) {
     Deal& deal = surface.deal;
     deal.chosen = true;
@@ -40,6 +39,7 @@ void Dealer::choose(ClientSurface& surface) {
     if (!may_deal(surface)) return;
     for (const auto& node : nodes_)
         if (node->info.renders && node->answers() && !node->slow) deal.hands.push_back({node->index});
+    if (group_ && !deal.hands.empty()) deal.hands = {deal.hands[group_->rank % deal.hands.size()]};
 }
 
 /// A layer of the whole window has all of it, whatever is to be seen there.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "client_lib/follow/node_updater.h"
 #include "client_lib/follow/nodes.h"
 #include "client_lib/geometry/needs.h"
+#include "client_lib/link/parallel.h"
 #include "common/wire/limits.h"
 
 namespace wall::client {
@@ -50,6 +52,7 @@ private:
     Nodes& nodes_;
     NodeUpdater& updater_;
     const bool wanted_;
+    const std::optional<Parallel>& group_ = parallel();
     std::vector<Dealt> dealt_;  ///< used again and again
 };
 

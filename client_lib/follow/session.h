@@ -177,6 +177,7 @@ GLenum ClientSession::synchronize(ContextId context, bool at_once, Note&& note, 
     return packing([&] {
         const GLenum error = note(sync_);
         if (error != GL_NO_ERROR || !group_) return error;
+        for (const auto& [id, surface] : open_surfaces_) dealer_.compose(*surface);  // others may draw over it
         for (auto& node : nodes_) {
             if (!node->alive()) continue;
             pack(nodes_.batch(*node, context));

@@ -24,7 +24,7 @@ std::uint64_t BlockExecution::begin(std::uint64_t tiles, std::size_t bytes) {
     if (for_others_) tiles = std::max<std::uint64_t>(tiles & ~(std::uint64_t{1} << wire::kPartialSlot), 1);
     for (std::uint64_t rest = tiles; rest != 0 && surface != nullptr; rest &= rest - 1) {
         const auto slot = static_cast<unsigned>(std::countr_zero(rest));
-        const bool there = for_others_ ? slot < surface->partials().size() : surface->layer(slot) != nullptr;
+        const bool there = for_others_ ? slot < partials().all().size() : surface->layer(slot) != nullptr;
         if (there) present |= std::uint64_t{1} << slot;
     }
     // With no layer at all the block is still decoded once, for what it leaves in the soft context.
@@ -73,11 +73,10 @@ Layer* BlockExecution::find_layer() const {
     SurfaceReplica* surface = execution_.draw_surface;
     if (surface == nullptr) return nullptr;
     if (!for_others_) return surface->layer(block_.slot, for_right_eye_ ? geom::Eye::right : geom::Eye::left);
-    if (block_.slot >= surface->partials().size()) return nullptr;
-    auto& partial = surface->partials()[block_.slot];
-    partial.drawn = true;
-    return partial.layer.get();
+    return partials().draw_to(block_.slot);
 }
+
+PartialLayers& BlockExecution::partials() const { return execution_.session.partials(execution_.context->draw); }
 
 bool BlockExecution::draws_right_only() const {
     return glstate::eye_of(glstate::el::draw_buffer::ref(execution_.context->state)) == geom::Eye::right;

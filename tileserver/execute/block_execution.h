@@ -36,6 +36,7 @@ private:
     /// Of the open tile; it draws if that can be drawn to.
     void find_target();
     Layer* find_layer() const;
+    PartialLayers& partials() const;
     void enter_tile();
     void finish_tile();
     bool draws_right_only() const;

@@ -52,28 +52,28 @@ void PartialCommands::PartialBegin(SurfaceId id, std::uint32_t far, std::span<co
         return execution_.refuse("no whole number of receivers, or too many");
     const geom::Rect window{0, 0, static_cast<std::int32_t>(surface->where().window_width),
                             static_cast<std::int32_t>(surface->where().window_height)};
-    std::vector<SurfaceReplica::Partial> wanted;
+    std::vector<PartialLayers::One> wanted;
     for (const Receiver& to : receivers_of(bytes)) {
         const geom::Rect area{to.x, to.y, to.width, to.height};
         if (to.slot >= wire::kMaxTilesPerNode || to.width <= 0 || to.height <= 0 || to.x < 0 || to.y < 0 ||
             to.width > window.width - to.x || to.height > window.height - to.y ||
             std::int64_t{area.width} * area.height > kMaxPartialPixels)
             return execution_.refuse("a receiver of what is not in the window");
-        wanted.push_back({to.node, to.slot, area, false, nullptr});
+        wanted.push_back({to.node, to.slot, area});
     }
-    if (!surface->open_partials(std::move(wanted))) return execution_.refuse("more pixels than a session may have");
-    for (const auto& partial : surface->partials()) partial.layer->clear_to_depth(far);
+    PartialLayers& partials = execution_.session.partials(id);
+    if (!partials.open(*surface, std::move(wanted))) return execution_.refuse("more pixels than a session may have");
+    for (const auto& partial : partials.all()) partial.layer->clear_to_depth(far);
     execution_.targets_known = false;
     execution_.node.driver.forget_target();
 }
 
 void PartialCommands::PartialSend(SurfaceId id, std::uint32_t sequence, std::uint32_t from) {
-    SurfaceReplica* surface = known_surface(id);
-    if (surface == nullptr) return;
+    if (known_surface(id) == nullptr) return;
     const Timed timed(execution_.session.work.partial);
     execution_.node.driver.neutral_pixel_transfer();
-    for (auto& partial : surface->partials()) {
-        auto message = take_partial(partial, {id, sequence, NodeIndex(from), partial.slot});
+    for (auto& partial : execution_.session.partials(id).all()) {
+        auto message = take_partial(partial, {id, sequence, rank(), NodeIndex(from), partial.slot});
         execution_.session.work.partial_bytes += message.size();
         if (partial.node != from) execution_.output.partial(NodeIndex(partial.node), std::move(message));
         else if (execution_.node.partials != nullptr)
@@ -83,7 +83,7 @@ void PartialCommands::PartialSend(SurfaceId id, std::uint32_t sequence, std::uin
 }
 
 /// What was not drawn to need not be read.
-std::vector<std::byte> PartialCommands::take_partial(SurfaceReplica::Partial& partial, const PartialKey& key) const {
+std::vector<std::byte> PartialCommands::take_partial(PartialLayers::One& partial, const PartialKey& key) const {
     PixelBlock block{.area = partial.area, .top_row_first = false, .colors = {}, .depths = {}};
     if (std::exchange(partial.drawn, false)) partial.layer->read_block(block);
     return encode_partial(key, block);
@@ -106,7 +106,7 @@ void PartialCommands::PartialMerge(SurfaceId surface, std::uint32_t sequence, GL
             std::uint32_t node = 0;
             std::memcpy(&node, nodes.data() + at, sizeof node);
             merge.keys.push_back(
-                {surface, sequence, NodeIndex(node), static_cast<std::uint32_t>(std::countr_zero(slots))});
+                {surface, sequence, rank(), NodeIndex(node), static_cast<std::uint32_t>(std::countr_zero(slots))});
         }
     merge_ = std::move(merge);
     go_on();
@@ -132,7 +132,7 @@ void PartialCommands::go_on() {
         if (layer != nullptr && box != nullptr)
             merge_into(*layer, std::span(merge.keys).subspan(first, next - first), merge.depth_func);
     }
-    if (box != nullptr) box->close(execution_.session.id(), merge.surface, merge.sequence);
+    if (box != nullptr) box->close(execution_.session.id(), merge.surface, rank(), merge.sequence);
     execution_.targets_known = false;
 }
 

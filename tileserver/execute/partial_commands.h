@@ -44,7 +44,8 @@ private:
     };
 
     SurfaceReplica* known_surface(SurfaceId id);
-    std::vector<std::byte> take_partial(SurfaceReplica::Partial& partial, const PartialKey& key) const;
+    Rank rank() const { return execution_.session.rank(); }
+    std::vector<std::byte> take_partial(PartialLayers::One& partial, const PartialKey& key) const;
     void merge_into(Layer& layer, std::span<const PartialKey> keys, GLenum depth_func);
 
     Execution& execution_;

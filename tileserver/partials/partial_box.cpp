@@ -10,7 +10,7 @@ Result<void> PartialBox::put(SessionId session, std::vector<std::byte> message) 
     if (!key) return tl::unexpected(key.error());
     const std::lock_guard lock(mutex_);
     OfSession& its = sessions_[session];
-    const auto closed = its.closed.find(key->surface);
+    const auto closed = its.closed.find({key->surface, key->rank});
     if (closed != its.closed.end() && key->sequence <= closed->second) return {};
     if (its.bytes + message.size() > kMostBytes) return fail("more partial pictures than a session may have");
     its.bytes += message.size();
@@ -37,12 +37,13 @@ std::optional<std::vector<std::byte>> PartialBox::take(SessionId session, const 
     return std::move(node.mapped());
 }
 
-void PartialBox::close(SessionId session, SurfaceId surface, std::uint32_t sequence) {
+void PartialBox::close(SessionId session, SurfaceId surface, std::uint32_t rank, std::uint32_t sequence) {
     const std::lock_guard lock(mutex_);
     OfSession& its = sessions_[session];
-    its.closed[surface] = sequence;
+    its.closed[{surface, rank}] = sequence;
     for (auto at = its.messages.begin(); at != its.messages.end();) {
-        const bool old = at->first.surface == surface && at->first.sequence <= sequence;
+        const PartialKey& key = at->first;
+        const bool old = key.surface == surface && key.rank == rank && key.sequence <= sequence;
         if (old) its.bytes -= at->second.size();
         at = old ? its.messages.erase(at) : std::next(at);
     }

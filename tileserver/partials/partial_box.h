@@ -29,14 +29,14 @@ public:
     bool has(SessionId session, std::span<const PartialKey> keys) const;
     /// Nothing: it has not come.
     std::optional<std::vector<std::byte>> take(SessionId session, const PartialKey& key);
-    /// The window's partial pictures up to that sequence are not waited for any more.
-    void close(SessionId session, SurfaceId surface, std::uint32_t sequence);
+    /// The window's partial pictures up to that sequence, of that process, are not waited for any more.
+    void close(SessionId session, SurfaceId surface, std::uint32_t rank, std::uint32_t sequence);
     void forget(SessionId session);
 
 private:
     struct OfSession {
         std::map<PartialKey, std::vector<std::byte>> messages;
-        std::map<SurfaceId, std::uint32_t> closed;  ///< sequences up to this
+        std::map<std::pair<SurfaceId, std::uint32_t>, std::uint32_t> closed;  ///< by rank: sequences up to this
         std::size_t bytes = 0;
     };
 

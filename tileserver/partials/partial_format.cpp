@@ -26,9 +26,9 @@ enum Field : std::size_t {
     top_row_first,
     codec,
     plain_bytes,
-    zero
+    rank
 };
-static_assert((zero + 1) * kWord == kPartialHeader);
+static_assert((rank + 1) * kWord == kPartialHeader);
 
 std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t index) {
     std::uint32_t word = 0;
@@ -61,6 +61,7 @@ std::vector<std::byte> begin_message(const PartialKey& key, const geom::Rect& ar
     std::vector<std::byte> out(kPartialHeader);
     set_word(out, surface, key.surface.value);
     set_word(out, sequence, key.sequence);
+    set_word(out, rank, key.rank);
     set_word(out, from, key.from.value);
     set_word(out, slot, key.slot);
     set_word(out, x, static_cast<std::uint32_t>(area.x));
@@ -147,7 +148,7 @@ std::vector<std::byte> recode_partial(std::span<const std::byte> message, Partia
 
 Result<PartialKey> key_of_partial(std::span<const std::byte> message) {
     if (message.size() < kPartialHeader) return tl::unexpected(wrong("shorter than its header"));
-    return PartialKey{SurfaceId(word_at(message, surface)), word_at(message, sequence),
+    return PartialKey{SurfaceId(word_at(message, surface)), word_at(message, sequence), word_at(message, rank),
                       NodeIndex(word_at(message, from)), word_at(message, slot)};
 }
 

@@ -4,7 +4,7 @@
 // is not sent: the pixels come as runs.
 //
 //   partial := surface:u32 sequence:u32 from:u32 slot:u32 x:i32 y:i32 width:u32 height:u32 top_row_first:u32
-//              codec:u32 plain_bytes:u32 zero:u32 coded
+//              codec:u32 plain_bytes:u32 rank:u32 coded
 //   plain   := runs:u32 pixels:u32 (skip:u32 take:u32)[runs] color:u32[pixels] depth:u32[pixels]     (little endian)
 //
 // A color is RGBA, red in its low byte; a depth has 24 bits in its high ones, and in its low ones what the receiver
@@ -36,7 +36,8 @@ struct PixelBlock {
 /// What a partial picture is of.
 struct PartialKey {
     SurfaceId surface;
-    std::uint32_t sequence = 0;  ///< grows with every composition of the window
+    std::uint32_t sequence = 0;  ///< grows with every composition of the window, by one process
+    std::uint32_t rank = 0;      ///< of that, in a parallel program
     NodeIndex from;
     std::uint32_t slot = 0;  ///< of the receiver's layer
     auto operator<=>(const PartialKey&) const = default;

@@ -11,6 +11,7 @@ SurfaceReplica* SessionReplica::surface(SurfaceId id) {
 
 SurfaceReplica* SessionReplica::create_surface(SurfaceId id, const SurfaceFormat& format) {
     driver_.forget_target();
+    partials_.erase(id);
     if (shares(id)) return group_->open_surface(rank_, id, format);
     if (surfaces_.size() >= kMaxSurfaces && !surfaces_.contains(id)) return nullptr;
     auto& surface = surfaces_[id];
@@ -19,8 +20,9 @@ SurfaceReplica* SessionReplica::create_surface(SurfaceId id, const SurfaceFormat
 }
 
 void SessionReplica::destroy_surface(SurfaceId id) {
-    if (shares(id)) return group_->close_surface(rank_, id);
     driver_.forget_target();
+    partials_.erase(id);
+    if (shares(id)) return group_->close_surface(rank_, id);
     surfaces_.erase(id);
 }
 

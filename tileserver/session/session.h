@@ -18,6 +18,7 @@
 #include "tileserver/objects/object_table.h"
 #include "tileserver/session/limits.h"
 #include "tileserver/session/parallel_group.h"
+#include "tileserver/session/partial_layers.h"
 #include "tileserver/session/surface.h"
 #include "tileserver/session/work.h"
 
@@ -83,6 +84,8 @@ public:
     /// Null if the session has too many, or if the other members have made it in another format.
     SurfaceReplica* create_surface(SurfaceId id, const SurfaceFormat& format);
     void destroy_surface(SurfaceId id);
+    /// What this stream draws of a window for other nodes.
+    PartialLayers& partials(SurfaceId id) { return partials_[id]; }
 
     ObjectTable objects;
     Work work;
@@ -95,6 +98,7 @@ private:
     std::unordered_map<ContextId, SoftContext> contexts_;
     PixelBudget pixels_{kMaxLayerPixels};  // before the surfaces, which use it to the end
     std::unordered_map<SurfaceId, std::unique_ptr<SurfaceReplica>> surfaces_;
+    std::unordered_map<SurfaceId, PartialLayers> partials_;
 };
 
 }  // namespace wall::tileserver

@@ -60,7 +60,6 @@ LayerGeometry SurfaceReplica::geometry_on(const Tile& tile, const geom::Rect& ar
 bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
     const bool same_size = place.window_width == place_.window_width && place.window_height == place_.window_height;
     place_ = place;
-    partials_.clear();  // they lie relative to it
     const Views views = std::exchange(next_views_, {});
     for (const geom::Eye eye : eyes())
         if (!(place.whole_window || place.shown_whole) || !same_size) layers_[index(wire::kOffscreenSlot, eye)].reset();
@@ -105,21 +104,15 @@ const Layer* SurfaceReplica::shown_layer(const Tile& tile) const {
     return (replaced_[at] ? older_ : layers_)[at].get();
 }
 
-bool SurfaceReplica::open_partials(std::vector<Partial> wanted) {
+LayerGeometry SurfaceReplica::geometry_of_part(const geom::Rect& part) const {
+    const geom::Rect canvas{place_.rect.x + part.x, place_.rect.bottom() - part.bottom(), part.width, part.height};
+    return {place_.rect, canvas, place_.window_width, place_.window_height, {}};
+}
+
+std::unique_ptr<Layer> SurfaceReplica::make_partial(const LayerGeometry& geometry) {
     const LayerFormat format{.double_buffered = false, .alpha = format_.layer.alpha, .srgb = format_.layer.srgb};
-    bool affordable = true;
-    for (Partial& partial : wanted) {
-        const auto same = std::ranges::find(partials_, partial.area, &Partial::area);
-        if (same != partials_.end() && same->layer) partial.layer = std::move(same->layer);
-        if (partial.layer) continue;
-        const geom::Rect& area = partial.area;
-        const geom::Rect canvas{place_.rect.x + area.x, place_.rect.bottom() - area.bottom(), area.width, area.height};
-        const LayerGeometry geometry{place_.rect, canvas, place_.window_width, place_.window_height, {}};
-        affordable = affordable && pixels_taken(geometry, format) <= budget_.left;
-        if (affordable) partial.layer = std::make_unique<Layer>(gl_, flip_y_, geometry, format, budget_);
-    }
-    partials_ = std::move(wanted);
-    return affordable;
+    if (pixels_taken(geometry, format) > budget_.left) return nullptr;
+    return std::make_unique<Layer>(gl_, flip_y_, geometry, format, budget_);
 }
 
 Layer* SurfaceReplica::layer(std::uint32_t slot, geom::Eye eye) {

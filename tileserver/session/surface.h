@@ -70,17 +70,10 @@ public:
         return layers_[index(slot, eye)].get();
     }
 
-    /// A layer that another node shows, or this one: what is drawn of the window for it, with a stencil buffer whatever
-    /// the window has (wire::kPartialSlot).
-    struct Partial {
-        std::uint32_t node = 0, slot = 0;  ///< who shows it
-        geom::Rect area;                   ///< window pixels, origin bottom left
-        bool drawn = false;                ///< since it was empty
-        std::unique_ptr<Layer> layer;
-    };
-    /// Whom the next blocks are for; of `area`s those that lie as before keep their layers. False: over the budget.
-    bool open_partials(std::vector<Partial> wanted);
-    std::vector<Partial>& partials() { return partials_; }
+    /// Of a layer that holds a part of the window as a tile would that shows it.
+    LayerGeometry geometry_of_part(const geom::Rect& window_pixels) const;
+    /// A layer for PartialLayers. Null: over the budget.
+    std::unique_ptr<Layer> make_partial(const LayerGeometry& geometry);
 
     /// The layer that has all of the window's pixels as they are; null: none here does.
     Layer* whole_layer(geom::Eye eye);
@@ -138,7 +131,6 @@ private:
     SurfacePlace place_;
     Views next_views_;
     Layers layers_;  ///< that are drawn on
-    std::vector<Partial> partials_;
     std::optional<std::uint32_t> waiting_;
     std::uint32_t shown_ = 0;
     bool shown_once_ = false;

@@ -222,7 +222,7 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     session.name = hello.name().substr(0, kMaxText);
     session.owner = std::move(owner);
     session.held = hello.hold();
-    session.sort_last = hello.sort_last() && !session.group;
+    session.sort_last = hello.sort_last();
     if (hello.has_stereo() && !session.group) session.stereo = checked(hello.stereo());
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
     session.fullscreen = hello.fullscreen();

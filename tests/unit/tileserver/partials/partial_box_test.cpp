@@ -13,7 +13,7 @@ std::vector<std::byte> message_of(const PartialKey& key) {
 }
 
 PartialKey key_of(std::uint32_t sequence, std::uint32_t from = 0) {
-    return {SurfaceId(1), sequence, NodeIndex(from), 0};
+    return {SurfaceId(1), sequence, 0, NodeIndex(from), 0};
 }
 
 TEST(ABox, KeepsWhatHasComeUntilItIsTaken) {
@@ -31,7 +31,9 @@ TEST(ABox, KeepsWhatHasComeUntilItIsTaken) {
 TEST(ABox, DropsWhatComesTooLate) {
     PartialBox box;
     ASSERT_TRUE(box.put(kSession, message_of(key_of(1))));
-    box.close(kSession, SurfaceId(1), 2);
+    box.close(kSession, SurfaceId(1), 1, 9);
+    EXPECT_TRUE(box.has(kSession, std::vector{key_of(1)})) << "another process's";
+    box.close(kSession, SurfaceId(1), 0, 2);
     EXPECT_FALSE(box.take(kSession, key_of(1)));
     ASSERT_TRUE(box.put(kSession, message_of(key_of(2))));
     EXPECT_FALSE(box.take(kSession, key_of(2)));

@@ -12,7 +12,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr PartialKey kKey{SurfaceId(3), 17, NodeIndex(2), 5};
+constexpr PartialKey kKey{SurfaceId(3), 17, 6, NodeIndex(2), 5};
 
 /// As a layer reads it: depths of 24 bits, and what was drawn marked by the stencil value.
 std::uint32_t drawn(std::uint32_t depth) { return depth << 8 | 1; }

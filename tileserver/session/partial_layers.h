@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What a stream draws of a window for other nodes (docs/sort-last.md): layers that lie as theirs do, each with a
+// stencil buffer, whatever the window has. Render thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/geom/rect.h"
+#include "tileserver/driver/layer.h"
+
+namespace wall::tileserver {
+
+class SurfaceReplica;
+
+class PartialLayers {
+public:
+    struct One {
+        std::uint32_t node = 0, slot = 0;  ///< who shows it
+        geom::Rect area;                   ///< window pixels, origin bottom left
+        bool drawn = false;                ///< since it was empty
+        std::unique_ptr<Layer> layer{};
+    };
+
+    /// Those of the window as it lies now; such as are there already keep their memory. False: over the budget.
+    bool open(SurfaceReplica& surface, std::vector<One> wanted);
+    std::vector<One>& all() { return all_; }
+    /// To draw to. Null: there is none.
+    Layer* draw_to(unsigned number);
+
+private:
+    std::vector<One> all_;
+};
+
+}  // namespace wall::tileserver
