@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "client_lib/follow/surface.h"
@@ -31,15 +32,30 @@ bool Dealer::may_deal(const ClientSurface& surface) const {
            std::uint64_t{layout.width} * layout.height <= kMostPixels;
 }
 
-/// Who draws in this frame. Each process of a parallel program has one node.
+/// Who draws in this frame, and how much. Each process of a parallel program has one node.
 void Dealer::choose(ClientSurface& surface) {
     Deal& deal = surface.deal;
     deal.chosen = true;
     deal.hands.clear();
     if (!may_deal(surface)) return;
+    std::vector<NodeIndex> render;
     for (const auto& node : nodes_)
-        if (node->info.renders && node->answers() && !node->slow) deal.hands.push_back({node->index});
-    if (group_ && !deal.hands.empty()) deal.hands = {deal.hands[group_->rank % deal.hands.size()]};
+        if (node->info.renders && node->answers() && !node->slow) render.push_back(node->index);
+    if (group_ && !render.empty()) render = {render[group_->rank % render.size()]};
+    hear_paces(deal);
+    const std::vector<double> ends = deal.paces.ends(render);
+    for (std::size_t i = 0; i < render.size(); ++i) deal.hands.push_back({render[i], ends[i]});
+}
+
+void Dealer::hear_paces(Deal& deal) {
+    std::erase_if(deal.asked, [&](Deal::Asked& asked) {
+        if (!asked.answer.done()) return false;
+        std::uint64_t took = 0;
+        for (const auto& answer : asked.answer.take_answers())
+            if (answer.size() == sizeof took) std::memcpy(&took, answer.data(), sizeof took);
+        if (took != 0) deal.paces.note(asked.node, asked.elements, std::chrono::nanoseconds(took));
+        return true;
+    });
 }
 
 /// A layer of the whole window has all of it, whatever is to be seen there.
@@ -74,29 +90,32 @@ std::span<const Dealer::Dealt> Dealer::deal(const DrawSource& source, const Reac
     cut(deal, mask != 0 ? mask | kPartialBit : 0, elements, pieces);
     deal.open = true;
     deal.depth_func = *func;
-    deal.cost += elements;
+    if (mask != 0) deal.cost += elements;
     return dealt_;
 }
 
-/// A frame is taken to cost what the one before did. A node that has gone in mid-frame draws no more of it.
+/// A frame is taken to have as many elements as the one before. A node that has gone in mid-frame draws no more of it.
 void Dealer::cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t pieces) {
-    const auto hands = static_cast<double>(deal.hands.size());
     const double whole = deal.cost_before > 0 ? deal.cost_before : pieces > 1 ? elements : 0;
+    const std::size_t last = deal.hands.size() - 1;
     const auto hand_at = [&](double cost) {
-        return whole > 0 ? std::min(std::floor(cost / whole * hands), hands - 1) : 0;
+        std::size_t hand = 0;
+        while (hand < last && whole > 0 && cost >= deal.hands[hand].end * whole) ++hand;
+        return hand;
     };
-    const auto add = [&](double hand, std::uint32_t first, std::uint32_t behind) {
-        dealt_.push_back({&nodes_[deal.hands[static_cast<std::size_t>(hand)].node], mask, first, behind});
+    const double each = elements / std::max(pieces, 1u);
+    const auto add = [&](std::size_t at, std::uint32_t first, std::uint32_t behind) {
+        Deal::Hand& hand = deal.hands[at];
+        if (mask != 0) hand.elements += behind != 0 ? (behind - first) * each : elements;
+        dealt_.push_back({&nodes_[hand.node], mask, first, behind});
     };
-    const double last = hand_at(deal.cost + elements);
-    if (pieces <= 1 || hand_at(deal.cost) == last) return add(hand_at(deal.cost), 0, 0);
-    const double each = elements / pieces;
+    const std::size_t begin = hand_at(deal.cost);
+    if (pieces <= 1 || hand_at(deal.cost + elements) == begin) return add(begin, 0, 0);
     for (std::uint32_t first = 0; first < pieces;) {
-        const double hand = hand_at(deal.cost + first * each);
-        const double end = ((hand + 1) * whole / hands - deal.cost) / each;  // of this node's run, in pieces
-        const auto behind = hand == hands - 1
-                                ? pieces
-                                : static_cast<std::uint32_t>(std::clamp(std::ceil(end), first + 1.0, 1.0 * pieces));
+        const std::size_t hand = hand_at(deal.cost + first * each);
+        const double end = std::ceil((deal.hands[hand].end * whole - deal.cost) / each);  // of its run, in pieces
+        const auto behind =
+            hand == last ? pieces : static_cast<std::uint32_t>(std::clamp(end, first + 1.0, double{1} * pieces));
         add(hand, first, behind);
         first = behind;
     }
@@ -128,8 +147,12 @@ void Dealer::compose(ClientSurface& surface) {
         if (!std::exchange(hand.drew, false) || !nodes_[hand.node].alive()) continue;
         from.push_back(hand.node.value);
         Node& node = nodes_[hand.node];
-        glapi::pack::PartialSend(nodes_.batch(node, node.batch_context), surface.id, deal.sequence, hand.node.value);
+        const RequestId request = nodes_.next_request();
+        glapi::pack::PartialSend(nodes_.batch(node, node.batch_context), surface.id, deal.sequence, hand.node.value,
+                                 request);
         nodes_.send(node);
+        deal.asked.push_back({hand.node, std::exchange(hand.elements, 0), {}});
+        deal.asked.back().answer.add(node.stream, request);
     }
     if (from.empty()) return;
     const DrawTarget target(surface);

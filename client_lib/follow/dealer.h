@@ -45,6 +45,7 @@ public:
 private:
     bool may_deal(const ClientSurface& surface) const;
     void choose(ClientSurface& surface);
+    static void hear_paces(Deal& deal);
     std::vector<TargetLayer> receivers_of(const ClientSurface& surface) const;
     void cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t pieces);
     static void pack_begin(wire::PackBuffer& buffer, const ClientSurface& surface);

@@ -103,7 +103,7 @@ void draw_on(const Followers& followers, const DrawSource& source, const Drawn& 
         before(*part.node, buffer);
         const std::size_t bytes = buffer.bytes();
         const OpenBlock block = begin_block(buffer, part.mask);
-        if (part.behind != 0) glapi::pack::PartialRange(buffer, part.first, part.behind);
+        if (part.behind != 0) glapi::pack::PieceRange(buffer, part.first, part.behind);
         pack(buffer);
         end_block(buffer, block);
         count(*part.node, NodeCounter::geometry_bytes, buffer.bytes() - bytes);

@@ -77,7 +77,8 @@ inline constexpr std::size_t kBlockBytes = 1 + 4 * sizeof(std::uint32_t);
 inline bool inside_block(OpGroup group) {
     return group == OpGroup::geometry || group == OpGroup::draw || group == OpGroup::array_draw ||
            group == OpGroup::blit || group == OpGroup::instanced_draw || group == OpGroup::captured_draw ||
-           group == OpGroup::dispatch || group == OpGroup::texture_barrier || group == OpGroup::image_copy;
+           group == OpGroup::dispatch || group == OpGroup::texture_barrier || group == OpGroup::image_copy ||
+           group == OpGroup::piece_range;
 }
 
 template <class H>

@@ -120,6 +120,7 @@ public:
     MapCommands map{execution_};
     SyncCommands sync{execution_};
     PartialCommands partial{execution_};
+    PartialCommands& piece_range = partial;
 
     std::uint64_t begin_block(std::uint64_t tiles, std::size_t bytes) { return blocks_.begin(tiles, bytes); }
     void begin_tile(unsigned slot) { blocks_.begin_tile(slot); }

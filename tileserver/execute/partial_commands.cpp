@@ -68,7 +68,7 @@ void PartialCommands::PartialBegin(SurfaceId id, std::uint32_t far, std::span<co
     execution_.node.driver.forget_target();
 }
 
-void PartialCommands::PartialSend(SurfaceId id, std::uint32_t sequence, std::uint32_t from) {
+void PartialCommands::PartialSend(SurfaceId id, std::uint32_t sequence, std::uint32_t from, RequestId request) {
     if (known_surface(id) == nullptr) return;
     const Timed timed(execution_.session.work.partial);
     execution_.node.driver.neutral_pixel_transfer();
@@ -80,6 +80,11 @@ void PartialCommands::PartialSend(SurfaceId id, std::uint32_t sequence, std::uin
             if (const auto put = execution_.node.partials->put(execution_.session.id(), std::move(message)); !put)
                 execution_.refuse(put.error().message);
     }
+    if (!request) return;
+    const auto took = std::chrono::nanoseconds(Clock::now() - execution_.session.partials(id).opened());
+    const auto count = static_cast<std::uint64_t>(took.count());
+    const auto bytes = std::as_bytes(std::span(&count, 1));
+    execution_.output.reply(request, {bytes.begin(), bytes.end()});
 }
 
 /// What was not drawn to need not be read.
@@ -89,7 +94,7 @@ std::vector<std::byte> PartialCommands::take_partial(PartialLayers::One& partial
     return encode_partial(key, block);
 }
 
-void PartialCommands::PartialRange(std::uint32_t first, std::uint32_t behind) {
+void PartialCommands::PieceRange(std::uint32_t first, std::uint32_t behind) {
     if (first >= behind) return execution_.refuse("a range of no pieces");
     execution_.pieces = {first, behind};
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Group [partial]: pictures that several nodes of a sort-last session draw parts of (A3.3). What a node draws for
-// others lies in a layer of its own, whose stencil buffer tells what was drawn; it is read back and sent, and merged
-// into the layers of tiles pixel by pixel, exactly as if its geometry had been drawn there. Render thread.
+// Groups [partial] and [piece_range]: pictures that several nodes of a sort-last session draw parts of (A3.3). What a
+// node draws for others lies in a layer of its own, whose stencil buffer tells what was drawn; it is read back and
+// sent, and merged into the layers of tiles pixel by pixel, exactly as if its geometry had been drawn there. Render
+// thread.
 #pragma once
 
 #include <chrono>
@@ -21,8 +22,8 @@ public:
     explicit PartialCommands(Execution& execution) : execution_(execution) {}
 
     void PartialBegin(SurfaceId surface, std::uint32_t far, std::span<const std::byte> receivers);
-    void PartialSend(SurfaceId surface, std::uint32_t sequence, std::uint32_t from);
-    void PartialRange(std::uint32_t first, std::uint32_t behind);
+    void PartialSend(SurfaceId surface, std::uint32_t sequence, std::uint32_t from, RequestId request);
+    void PieceRange(std::uint32_t first, std::uint32_t behind);
     void PartialMerge(SurfaceId surface, std::uint32_t sequence, GLenum depth_func, std::uint32_t slots_low,
                       std::uint32_t slots_high, std::span<const std::byte> nodes);
 

@@ -9,6 +9,7 @@
 namespace wall::tileserver {
 
 bool PartialLayers::open(SurfaceReplica& surface, std::vector<One> wanted) {
+    opened_ = std::chrono::steady_clock::now();
     bool affordable = true;
     for (One& one : wanted) {
         const LayerGeometry geometry = surface.geometry_of_part(one.area);

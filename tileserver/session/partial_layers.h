@@ -3,6 +3,7 @@
 // stencil buffer, whatever the window has. Render thread.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -26,11 +27,14 @@ public:
     /// Those of the window as it lies now; such as are there already keep their memory. False: over the budget.
     bool open(SurfaceReplica& surface, std::vector<One> wanted);
     std::vector<One>& all() { return all_; }
+    /// When that was last.
+    std::chrono::steady_clock::time_point opened() const { return opened_; }
     /// To draw to. Null: there is none.
     Layer* draw_to(unsigned number);
 
 private:
     std::vector<One> all_;
+    std::chrono::steady_clock::time_point opened_{};
 };
 
 }  // namespace wall::tileserver

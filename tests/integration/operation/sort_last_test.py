@@ -60,11 +60,16 @@ class ProgramsThatAreDealt(unittest.TestCase):
     def partials(self, wall: PlannedWall, session: int) -> dict:
         return next(s for s in wall.sessions() if s["id"] == session)["partials"]
 
-    def test_their_pictures_are_the_same_by_any_number_of_nodes(self) -> None:
+    def without(self, frame: int) -> np.ndarray:
+        """What the wall shows of march, drawn by the nodes that show it."""
         with PlannedWall(plan_of(0), environment=QUIET, swap_timeout_ms=5000) as plain:
             app, session = self.start(plain, *MARCH, sort_last=False)
-            expected = self.picture(plain, session, FRAME)
+            shown = self.picture(plain, session, frame)
             self.assertEqual(self.partials(plain, session)["merged"], 0)
+        return shown
+
+    def test_their_pictures_are_the_same_by_any_number_of_nodes(self) -> None:
+        expected = self.without(FRAME)
         self.assertGreater((expected != expected[0, 0]).any(axis=2).mean(), 0.05, "there is something to be seen")
         for renderers in (1, 2, 4, 8):
             with self.subTest(renderers=renderers), PlannedWall(
@@ -88,10 +93,21 @@ class ProgramsThatAreDealt(unittest.TestCase):
         after = self.picture(wall, session, 1)
         self.assertEqual(before.shape, after.shape)
         frame = next(s for s in wall.sessions() if s["id"] == session)["surfaces"][0]["frame"]
-        with PlannedWall(plan_of(0), environment=QUIET, swap_timeout_ms=5000) as plain:
-            _, other = self.start(plain, *MARCH, sort_last=False)
-            expected = self.picture(plain, other, frame)
+        expected = self.without(frame)
         self.assertEqual(int((after != expected).any(axis=2).sum()), 0)
+
+    def test_processes_of_a_parallel_program_draw_on_a_node_each(self) -> None:
+        expected = self.without(FRAME)
+        for ranks, renderers in ((2, 2), (4, 3)):
+            with self.subTest(ranks=ranks, renderers=renderers), PlannedWall(
+                    plan_of(renderers), node_keys=keys_of(renderers), environment=QUIET, swap_timeout_ms=5000) as wall:
+                wall.run_line(wall.wallrun(*MARCH, rect=(13, 9, 600, 400), hold=True, sort_last=True, parallel=ranks),
+                              env=self.x.environment(), stdout=subprocess.DEVNULL)
+                session = wall.wait_session()
+                given = self.picture(wall, session, FRAME)
+                self.assertEqual(int((given != expected).any(axis=2).sum()), 0)
+                wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
+                self.assertEqual(self.partials(wall, session)["missed"], 0)
 
 
 if __name__ == "__main__":

@@ -79,8 +79,9 @@ protected:
         renderer.expect_run(begin);
         for (const int which : {first, first + 1}) draw(renderer, kPartial, which, true);
         Batch send;
-        pack::PartialSend(send.buffer(), kSurface, sequence, from);
+        pack::PartialSend(send.buffer(), kSurface, sequence, from, RequestId(5));
         renderer.expect_run(send);
+        EXPECT_EQ(renderer.replies[RequestId(5)].size(), sizeof(std::uint64_t)) << "how long it took";
     }
     void deliver(TestSession& renderer) {
         for (auto& [to, message] : renderer.partials) {

@@ -91,7 +91,7 @@ protected:
         std::array<std::uint32_t, 6> words{};
         std::memcpy(words.data(), operands.data() + at, std::min(sizeof words, operands.size() - at));
         if (op == Op::Block) packed.blocks.push_back(words[0] | std::uint64_t{words[1]} << 32);
-        if (op == Op::PartialRange) packed.ranges.emplace_back(words[0], words[1]);
+        if (op == Op::PieceRange) packed.ranges.emplace_back(words[0], words[1]);
         at += glapi::kOpFixedBytes[static_cast<std::size_t>(op)];
         if (op == Op::PartialBegin) at += words[2];
         if (op == Op::PartialMerge) at += words[5];
