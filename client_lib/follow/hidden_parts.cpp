@@ -131,7 +131,7 @@ wire::PackBuffer& HiddenParts::prepare(KeptFrame& frame, const DrawSource& sourc
     constexpr auto kCurrent = glstate::mask_of(glstate::Category::current);
     const auto categories = categories_to_send(needs, mirror.state, source.state);
     if (categories & kCurrent) diff_current(mirror.state, source.state, needs, sink);
-    glstate::diff(categories & ~kCurrent, mirror.state, source.state, sink);
+    glstate::diff_lazily(categories & ~kCurrent, mirror.state, source.state, sink);
     return follower.batch;
 }
 

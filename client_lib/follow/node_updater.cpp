@@ -29,7 +29,7 @@ wire::PackBuffer& NodeUpdater::prepare(Node& node, const DrawSource& source, con
     constexpr auto kCurrent = glstate::mask_of(glstate::Category::current);
     const auto categories = categories_to_send(needs, mirror.state, source.state);
     if (categories & kCurrent) diff_current(mirror.state, source.state, needs, sink);
-    glstate::diff(categories & ~kCurrent, mirror.state, source.state, sink);
+    glstate::diff_lazily(categories & ~kCurrent, mirror.state, source.state, sink);
     if (sampled) stats().add_diff_time(kDiffSample * (std::chrono::steady_clock::now() - diff_start));
     count(node, NodeCounter::object_bytes, object_bytes);
     count(node, NodeCounter::state_bytes, buffer.bytes() - state_start + surface_bytes);

@@ -2,6 +2,10 @@
 // diff(from, to): the one operation behind state updates of nodes, soft context switches, recovery and migration
 // (T3, T4, T5; DESIGN, section 1). A State belongs to one thread at a time.
 //
+// Lazy differences: what cannot matter now waits (T4), such as a blend function while blending is off; `when` of
+// state.toml says what an element depends on. A category in which something waits keeps a value id of its own, so that
+// the next difference looks at it again.
+//
 // Colour material (T3.2's cumulative attribute): while glColorMaterial tracking is on, the tracked material parameters
 // follow the current colour in the driver, without anybody storing them. Their stored values mean nothing then and are
 // not compared. When tracking ends or moves, store() gives them the current colour, by the same rule on both sides.
@@ -79,45 +83,53 @@ bool assign(State& s, unsigned i, const typename E::type& v) {
 
 namespace detail {
 
-// Each tells whether anything differed.
-template <class E, class Sink>
-bool diff_value(State& from, const State& to, unsigned i, Sink& sink) {
+// What was found: of several, all bits.
+inline constexpr unsigned kTold = 1, kWaits = 2;
+
+template <class E, bool Lazy, class Sink>
+unsigned diff_value(State& from, const State& to, unsigned i, Sink& sink) {
     if (same(E::ref(static_cast<const State&>(from), i), E::ref(to, i))) [[likely]]
-        return false;
-    if (follows_color<E>(to, i)) return false;
+        return 0;
+    if (follows_color<E>(to, i)) return 0;
+    if constexpr (Lazy && E::waits)
+        if (!E::matters(to, i)) return kWaits;
     const typename E::type v = E::ref(to, i);
     store<E>(from, i, v);
     sink.template set<E>(i, v);
-    return true;
+    return kTold;
 }
 
-template <class E, class Sink>
-bool diff_element(State& from, const State& to, Sink& sink) {
+template <class E, bool Lazy, class Sink>
+unsigned diff_element(State& from, const State& to, Sink& sink) {
     if constexpr (E::count > 1) {
         if (std::memcmp(&E::ref(static_cast<const State&>(from), 0), &E::ref(to, 0),
                         sizeof(typename E::type) * E::count) == 0) [[likely]]
-            return false;
+            return 0;
     }
-    bool differs = false;
-    for (unsigned i = 0; i < E::count; ++i) differs |= diff_value<E>(from, to, i, sink);
-    return differs;
+    unsigned found = 0;
+    for (unsigned i = 0; i < E::count; ++i) found |= diff_value<E, Lazy>(from, to, i, sink);
+    return found;
 }
 
-template <class Sink, class... E>
-bool diff_list(ElementList<E...>, State& from, const State& to, Sink& sink) {
-    return (static_cast<unsigned>(diff_element<E>(from, to, sink)) | ... | 0u) != 0;
+template <bool Lazy, class Sink, class... E>
+unsigned diff_list(ElementList<E...>, State& from, const State& to, Sink& sink) {
+    return (diff_element<E, Lazy>(from, to, sink) | ... | 0u);
 }
 
 // Where To is State, equal categories get one value id, that of `from`. Out of line: what a difference runs through is
 // then only the code of what may differ, and a processor between two scenes of llvmpipe's has to fetch all of it.
-template <std::size_t C, class To, class Sink>
+template <std::size_t C, bool Lazy, class To, class Sink>
 [[gnu::noinline]] void diff_of(State& from, To& to, Sink& sink) {
-    const bool differs = diff_list(typename CategoryElements<static_cast<Category>(C)>::list{}, from, to, sink);
+    const unsigned found = diff_list<Lazy>(typename CategoryElements<static_cast<Category>(C)>::list{}, from, to, sink);
     if constexpr (!std::is_const_v<To>) {
-        if (!differs) {
+        if (found == 0) {
             to.ids.take(C, from.ids[C]);
             return;
         }
+    }
+    if (Lazy && (found & kWaits) != 0) {
+        if ((found & kTold) != 0) from.ids.renew(C);
+        return;
     }
     from.ids.take(C, to.ids[C]);
 }
@@ -130,16 +142,16 @@ inline CategoryMask differing(CategoryMask wanted, const State& a, const State& 
 }
 
 // The function of category C, none where Mask does not have it.
-template <CategoryMask Mask, std::size_t C, class To, class Sink>
+template <CategoryMask Mask, std::size_t C, bool Lazy, class To, class Sink>
 constexpr auto diff_function() -> void (*)(State&, To&, Sink&) {
-    if constexpr ((Mask >> C & 1) != 0) return diff_of<C, To, Sink>;
+    if constexpr ((Mask >> C & 1) != 0) return diff_of<C, Lazy, To, Sink>;
     else return nullptr;
 }
 
 // Mask: those that `wanted` may have.
-template <CategoryMask Mask, class To, class Sink, std::size_t... C>
+template <CategoryMask Mask, bool Lazy = false, class To, class Sink, std::size_t... C>
 void diff_categories(CategoryMask wanted, State& from, To& to, Sink& sink, std::index_sequence<C...>) {
-    static constexpr std::array kFunctions = {diff_function<Mask, C, To, Sink>()...};
+    static constexpr std::array kFunctions = {diff_function<Mask, C, Lazy, To, Sink>()...};
     for (CategoryMask rest = differing(wanted & Mask, from, to); rest != 0; rest &= rest - 1)
         kFunctions[static_cast<std::size_t>(std::countr_zero(rest))](from, to, sink);
 }
@@ -200,10 +212,16 @@ void diff(CategoryMask wanted, State& from, const State& to, Sink&& sink) {
     detail::diff_categories<kSentCategories>(wanted, from, to, sink, std::make_index_sequence<kCategoryCount>{});
 }
 
+/// The same, but for what cannot matter with the state of `to`: that is told when it can.
+template <class Sink>
+void diff_lazily(CategoryMask wanted, State& from, const State& to, Sink&& sink) {
+    detail::diff_categories<kSentCategories, true>(wanted, from, to, sink, std::make_index_sequence<kCategoryCount>{});
+}
+
 template <Category C, class Sink>
 void diff_category(State& from, const State& to, Sink&& sink) {
     constexpr auto kId = static_cast<std::size_t>(C);
-    if (from.ids[kId] != to.ids[kId]) detail::diff_of<kId>(from, to, sink);
+    if (from.ids[kId] != to.ids[kId]) detail::diff_of<kId, false>(from, to, sink);
 }
 
 namespace detail {

@@ -54,7 +54,7 @@ def state_header(model):
                "    ValueIds<kCategoryCount> ids;\n")
     out += [f"    {c.struct} {c.name};\n" for c in model.categories]
     out.append("};\nstatic_assert(std::is_standard_layout_v<State>);\n\nnamespace el {\n\n")
-    out += [_tag(e, c) for c in model.categories for e in c.elements]
+    out += [_tag(model, e, c) for c in model.categories for e in c.elements]
     out.append("}  // namespace el\n\n/// The elements of each category, in the order in which a difference is told.\n"
                "template <Category>\nstruct CategoryElements;\n")
     for c in model.categories:
@@ -83,7 +83,22 @@ def _braced(initializer):
     return initializer if initializer.startswith("{") else "{" + initializer + "}"
 
 
-def _tag(e, c):
+def _matters(model, e):
+    """Whether an element's value can make a difference; of State `s` and index `i`."""
+    switches = model.switches(e)
+    if not switches:
+        return "    static constexpr bool waits = false;\n"
+    def place(s):
+        if s.count not in (1, e.count):
+            raise ValueError(f"{e.name}: {s.name} has another number of indices")
+        return f"s.{s.category}.{s.name}" + ("[i]" if s.count > 1 else "")
+    indexed = any(s.count > 1 for s in switches)
+    return ("    static constexpr bool waits = true;  ///< where it does not matter\n"
+            f"    static bool matters(const State& s, unsigned{' i' if indexed else ''}) {{\n        return ("
+            + " |\n                ".join(map(place, switches)) + ") != 0;\n    }\n")
+
+
+def _tag(model, e, c):
     at = f"s.{c.name}.{e.name}" + ("[i]" if e.count > 1 else "")
     i = "i" if e.count > 1 else ""
     return (f"struct {e.name} {{\n    using type = {e.cpp};\n"
@@ -93,6 +108,7 @@ def _tag(e, c):
             f"    static constexpr bool sent = {str(c.sent).lower()};\n"
             f"    static constexpr GLbitfield groups = {_mask(e.groups, GROUP_BITS)};\n"
             f"    static constexpr GLbitfield client_groups = {_mask(e.client_groups, CLIENT_GROUP_BITS)};\n"
+            + _matters(model, e) +
             f"    static type& ref(State& s, unsigned {i or ''}{' = 0' if i else ' = 0'}) {{ return {at}; }}\n"
             f"    static const type& ref(const State& s, unsigned {i or ''}{' = 0' if i else ' = 0'}) "
             f"{{ return {at}; }}\n}};\n")

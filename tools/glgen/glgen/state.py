@@ -146,7 +146,7 @@ class Element:
 
 
 _OPTIONAL = {"cap", "get", "set", "param", "emit", "hand", "norm", "valid", "min", "max", "above", "below", "clamp",
-             "args", "or", "invalid", "bits", "forward_max", "rest"}
+             "args", "or", "invalid", "bits", "forward_max", "rest", "when"}
 _KEYS = _OPTIONAL | {"name", "type", "fields", "value", "default", "defaults", "count", "index", "groups",
                      "client_groups"}
 
@@ -169,6 +169,17 @@ class StateModel:
     valid: dict         # name -> list of enums (or numbers, as text)
     families: dict      # name -> keys
     structs: dict       # struct name -> tuple of Field, in order of appearance
+    conditions: dict    # name of [when] -> words
+
+    def switches(self, element):
+        """The elements of which any must be on for this one to matter; none: it always does."""
+        by_name = {e.name: e for e in self.elements}
+
+        def resolve(word):
+            if word in self.conditions:
+                return [e for part in self.conditions[word].split() for e in resolve(part)]
+            return [by_name[word]]
+        return resolve(element.when) if element.when else []
 
     @property
     def elements(self):
@@ -254,6 +265,7 @@ def load(path):
     file = data.load(path)
     sections = dict(file.sections)
     valid, families, shared = sections.pop("valid"), sections.pop("family"), sections.pop("value")
+    conditions = sections.pop("when")
     categories, structs, names, next_id = [], {}, set(), 1
     for name, lines in sections.items():
         attributes = {k: v for k, v in lines.items() if k.startswith("_")}
@@ -270,7 +282,14 @@ def load(path):
             elements.append(e)
             next_id += e.count
         categories.append(Category(name, attributes.get("_note", ""), not attributes.get("_unsent", False), elements))
-    model = StateModel(categories, valid, families, structs)
+    model = StateModel(categories, valid, families, structs, conditions)
+    for e in model.elements:
+        words = [e.when] if e.when else []
+        while words:
+            word = words.pop()
+            if word not in names and word not in conditions:
+                file.refuse(f"neither an element nor a name of [when]: {word}", e.category, e.name)
+            words += conditions.get(word, "").split() if word not in names else []
     for before, category in zip(categories, categories[1:]):
         if category.sent and not before.sent:
             file.refuse("unsent categories must be the last ones (their elements do not travel)", before.name)
