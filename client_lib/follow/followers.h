@@ -97,6 +97,7 @@ void draw_on(const Followers& followers, const DrawSource& source, const Drawn& 
     using Parts = std::span<const Dealer::Dealt>;
     const Parts dealt = everywhere ? Parts() : dealer.deal(source, reach, drawn.elements, drawn.pieces);
     if (dealt.empty()) dealer.compose(source.draw);
+    if (drawn.elements == 0) dealer.compose(source.read);  // it may be a copy
     for (const Dealer::Dealt& part : dealt) {
         if (part.mask == 0 || !part.node->alive()) continue;
         wire::PackBuffer& buffer = dealer.prepare(*part.node, source, needs);

@@ -186,7 +186,10 @@ bool ClientSession::everywhere(const ClientSurface& surface) {
 }
 
 void ClientSession::draw_whole(ClientSurface& surface) {
-    packing([&] { surfaces_.draw_whole(surface); });
+    packing([&] {
+        dealer_.compose(surface);
+        surfaces_.draw_whole(surface);
+    });
 }
 
 void ClientSession::swap(ContextId context, ClientSurface& surface) {

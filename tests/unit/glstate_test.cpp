@@ -82,6 +82,79 @@ void scramble(State& state, std::mt19937& random, unsigned percent) {
     });
 }
 
+std::vector<std::uint32_t> told_lazily(State& mirror, const State& state) {
+    RecordingSink sink;
+    glstate::diff_lazily(glstate::kSentCategories, mirror, state, sink);
+    return sink.ids;
+}
+
+TEST(LazyDifferences, LeaveOutWhatCannotMatterUntilItCan) {
+    State state, mirror;
+    glstate::assign<el::blend_func>(state, 0, {GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ZERO});
+    glstate::assign<el::fog_density>(state, 0, 0.5f);
+    EXPECT_TRUE(told_lazily(mirror, state).empty());
+    glstate::assign<el::dither>(state, 0, 0);
+    EXPECT_EQ(told_lazily(mirror, state), (std::vector<std::uint32_t>{el::dither::id}));
+    EXPECT_TRUE(told_lazily(mirror, state).empty()) << "once";
+    glstate::assign<el::blend_enabled>(state, 0, 1);
+    EXPECT_EQ(told_lazily(mirror, state), (std::vector<std::uint32_t>{el::blend_enabled::id, el::blend_func::id}));
+    EXPECT_TRUE(glstate::same(mirror.color_buffer, state.color_buffer));
+    EXPECT_EQ(mirror.ids[static_cast<std::size_t>(el::dither::category)],
+              state.ids[static_cast<std::size_t>(el::dither::category)])
+        << "nothing is left to be looked at";
+}
+
+TEST(LazyDifferences, GoByTheIndexWhereThereAreAsMany) {
+    State state, mirror;
+    for (const unsigned light : {1u, 2u}) glstate::assign<el::light_ambient>(state, light, {1, 1, 1, 1});
+    glstate::assign<el::light_enabled>(state, 2, 1);
+    EXPECT_EQ(told_lazily(mirror, state),
+              (std::vector<std::uint32_t>{el::light_enabled::id + 2, el::light_ambient::id + 2}));
+}
+
+TEST(LazyDifferences, KeepNothingFromShaders) {
+    State state, mirror;
+    glstate::assign<el::fog_color>(state, 0, {1, 0, 0, 1});
+    EXPECT_TRUE(told_lazily(mirror, state).empty());
+    glstate::assign<el::current_program>(state, 0, 7);
+    EXPECT_EQ(told_lazily(mirror, state), (std::vector<std::uint32_t>{el::fog_color::id, el::current_program::id}))
+        << "its category has not changed since";
+}
+
+// Whatever a program does, a mirror has all that matters, and in the end, by a whole difference, everything.
+TEST(LazyDifferences, HaveAllThatMatters) {
+    std::mt19937 random(3);
+    State state, mirror;
+    std::size_t waited = 0;
+    for (int step = 0; step < 2000; ++step) {
+        unsigned number = random() % 400;
+        glstate::for_each_element([&]<class E>() {
+            if (!E::sent || E::category == glstate::Category::material || number-- != 0) return;
+            typename E::type value = E::ref(state, 0);
+            auto* bytes = reinterpret_cast<unsigned char*>(&value);
+            if constexpr (sizeof value == sizeof(std::uint32_t)) bytes[0] ^= 1;
+            else bytes[random() % sizeof value] ^= 1;
+            glstate::assign<E>(state, random() % E::count, value);
+        });
+        told_lazily(mirror, state);
+        glstate::for_each_element([&]<class E>() {
+            if (!E::sent) return;
+            for (unsigned i = 0; i < E::count; ++i) {
+                const bool equal = glstate::same(E::ref(mirror, i), E::ref(state, i));
+                if constexpr (E::waits) {
+                    ASSERT_TRUE(equal || !E::matters(state, i)) << E::name << " " << i;
+                    waited += !equal;
+                } else {
+                    ASSERT_TRUE(equal) << E::name << " " << i;
+                }
+            }
+        });
+    }
+    EXPECT_GT(waited, 1000u) << "it is about something";
+    glstate::diff(mirror, state, RecordingSink{});
+    expect_equal(mirror, state);
+}
+
 TEST(State, IsFollowedUntilItOrItsFollowerChanges) {
     State driver, a, b;
     glstate::assign<el::fog_density>(a, 0, 0.5f);

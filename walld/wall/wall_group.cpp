@@ -79,7 +79,11 @@ std::string Wall::member_gone(SessionId id, Rank rank) {
 
 /// All nodes of the wall take part in every frame, wherever the window lies: the members keep step on each.
 std::set<NodeIndex> Wall::nodes_of(const SessionEntry& session, const geom::Rect& rect) const {
-    return session.group ? nodes_under(config_.canvas()) : nodes_under(rect);
+    if (!session.group) return nodes_under(rect);
+    std::set<NodeIndex> out;
+    for (const NodeIndex i : nodes_.ids())
+        if (nodes_[i].up) out.insert(i);  // also those that only draw for others: all keep step
+    return out;
 }
 
 void Wall::add_nodes(proto::Placement& placement, const SessionEntry& session) const {
