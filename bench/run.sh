@@ -3,8 +3,8 @@
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
 #                                         order, switch, pack, mesh, buffers, late_node, notice, gpus, views, march,
-#                                         sort_last, off_wall, scaling, traffic, share, transport, coding, fair, streams, codec,
-#                                         simulate)
+#                                         sort_last, off_wall, scaling, traffic, share, transport, coding, fair,
+#                                         streams, codec, simulate)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

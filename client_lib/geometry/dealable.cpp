@@ -36,8 +36,8 @@ std::optional<std::uint32_t> composed_by(const glstate::State& state) {
 }
 
 MarkingState::MarkingState(glstate::State& state, Ids& ids)
-    : state_(state), own_(state.depth_stencil), own_id_(state.ids[kCategory]) {
-    if (ids.own != own_id_) ids = {own_id_, glstate::next_value_id()};
+    : state_(state), own_(state.depth_stencil), named_(state.ids[kCategory]) {
+    if (ids.own != named_) ids = {named_, glstate::next_value_id()};
     el::stencil_test::ref(state) = 1;
     for (unsigned face = 0; face < 2; ++face) {
         el::stencil_func::ref(state, face) = {GL_ALWAYS, 1, 0xff};
@@ -49,7 +49,7 @@ MarkingState::MarkingState(glstate::State& state, Ids& ids)
 
 MarkingState::~MarkingState() {
     state_.depth_stencil = own_;
-    state_.ids.take(kCategory, own_id_);
+    state_.ids.take(kCategory, named_);
 }
 
 }  // namespace wall::client

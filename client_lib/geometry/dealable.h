@@ -30,7 +30,7 @@ public:
 private:
     glstate::State& state_;
     const glstate::DepthStencilState own_;
-    const std::uint64_t own_id_;
+    const std::uint64_t named_;
 };
 
 }  // namespace wall::client

@@ -124,7 +124,7 @@ struct HandlerByGroup : glapi::Handler {
     glapi::NullHandler draw, array_draw, instanced_draw, captured_draw, texture_barrier, buffer, capture, capture_end,
         vertex_input, draw_pieces, renderbuffer, framebuffer, sampler, texture_buffer, texture_drawn, blit, read,
         object, texture, run, program, pipeline, subroutine, storage, dispatch, format, image_copy, texture_view,
-        surface_view, assembly, begin_again, query, map, sync;
+        surface_view, assembly, begin_again, partial, piece_range, query, map, sync;
 
     std::uint64_t begin_block(std::uint64_t tiles, std::size_t) { return tiles; }
     void begin_tile(unsigned) {}

@@ -127,14 +127,14 @@ TEST(LazyDifferences, HaveAllThatMatters) {
     State state, mirror;
     std::size_t waited = 0;
     for (int step = 0; step < 2000; ++step) {
-        unsigned number = random() % 400;
+        auto number = static_cast<unsigned>(random() % 400);
         glstate::for_each_element([&]<class E>() {
             if (!E::sent || E::category == glstate::Category::material || number-- != 0) return;
             typename E::type value = E::ref(state, 0);
             auto* bytes = reinterpret_cast<unsigned char*>(&value);
             if constexpr (sizeof value == sizeof(std::uint32_t)) bytes[0] ^= 1;
             else bytes[random() % sizeof value] ^= 1;
-            glstate::assign<E>(state, random() % E::count, value);
+            glstate::assign<E>(state, static_cast<unsigned>(random() % E::count), value);
         });
         told_lazily(mirror, state);
         glstate::for_each_element([&]<class E>() {

@@ -60,7 +60,9 @@ template <glstate::Category C, class... E>
     bool any = false;
     for (unsigned i = 0; i < std::max({E::count...}); ++i) {
         std::size_t element = 0;
-        ((any |= different[element++] && i < E::count && glstate::detail::diff_value<E>(from, to, i, driver)), ...);
+        ((any |=
+          different[element++] && i < E::count && glstate::detail::diff_value<E, false>(from, to, i, driver) != 0),
+         ...);
     }
     (any ? from : to).ids.take(kId, (any ? to : from).ids[kId]);
 }

@@ -59,7 +59,7 @@ void PartialCommands::PartialBegin(SurfaceId id, std::uint32_t far, std::span<co
             to.width > window.width - to.x || to.height > window.height - to.y ||
             std::int64_t{area.width} * area.height > kMaxPartialPixels)
             return execution_.refuse("a receiver of what is not in the window");
-        wanted.push_back({to.node, to.slot, area});
+        wanted.push_back({NodeIndex(to.node), to.slot, area});
     }
     PartialLayers& partials = execution_.session.partials(id);
     if (!partials.open(*surface, std::move(wanted))) return execution_.refuse("more pixels than a session may have");
@@ -75,7 +75,7 @@ void PartialCommands::PartialSend(SurfaceId id, std::uint32_t sequence, std::uin
     for (auto& partial : execution_.session.partials(id).all()) {
         auto message = take_partial(partial, {id, sequence, rank(), NodeIndex(from), partial.slot});
         execution_.session.work.partial_bytes += message.size();
-        if (partial.node != from) execution_.output.partial(NodeIndex(partial.node), std::move(message));
+        if (partial.node != NodeIndex(from)) execution_.output.partial(partial.node, std::move(message));
         else if (execution_.node.partials != nullptr)
             if (const auto put = execution_.node.partials->put(execution_.session.id(), std::move(message)); !put)
                 execution_.refuse(put.error().message);

@@ -8,7 +8,7 @@
 //   plain   := runs:u32 pixels:u32 (skip:u32 take:u32)[runs] color:u32[pixels] depth:u32[pixels]     (little endian)
 //
 // A color is RGBA, red in its low byte; a depth has 24 bits in its high ones, and in its low ones what the receiver
-// does not look at. A codec is named by four letters, as AnyGL names them in its packets (A5.4). Pure; any thread.
+// does not look at. A codec is named by four letters, as AnyGL names them in its packets (A5.3). Pure; any thread.
 #pragma once
 
 #include <cstddef>

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "common/base/ids.h"
 #include "common/geom/rect.h"
 #include "tileserver/driver/layer.h"
 
@@ -18,9 +19,10 @@ class SurfaceReplica;
 class PartialLayers {
 public:
     struct One {
-        std::uint32_t node = 0, slot = 0;  ///< who shows it
-        geom::Rect area;                   ///< window pixels, origin bottom left
-        bool drawn = false;                ///< since it was empty
+        NodeIndex node;  ///< who shows it
+        std::uint32_t slot = 0;
+        geom::Rect area;     ///< window pixels, origin bottom left
+        bool drawn = false;  ///< since it was empty
         std::unique_ptr<Layer> layer{};
     };
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Programs whose geometry is dealt to nodes (docs/sort-last.md): their pictures are those that they have without it, for
-any number of nodes that draw, and again when one of them is gone."""
+"""Programs whose geometry is dealt to nodes (docs/sort-last.md): their pictures are those that they have without it,
+for any number of nodes that draw, and again when one of them is gone."""
 from __future__ import annotations
 
 import subprocess

@@ -12,7 +12,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 constexpr NodeIndex kOne(3), kTwo(5), kThree(6);
-constexpr auto near(double value) { return DoubleNear(value, 1e-9); }
+auto near(double value) { return DoubleNear(value, 1e-9); }
 
 TEST(ThePacesOfNodes, AreTheSameUntilTheyAreMeasured) {
     const NodePaces paces;

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "client_lib/follow/followers.h"
+#include "common/glstate/elements.h"
 #include "tests/unit/client_lib/fake_node.h"
 
 namespace wall::client {
