@@ -14,7 +14,7 @@ namespace wall::tileserver {
 namespace {
 
 /// A node whose picture does not come by then is done without: it may be gone.
-constexpr std::chrono::milliseconds kLongestWait{1000};
+constexpr std::chrono::milliseconds kLongestWait{5000};
 
 /// As PartialBegin has it.
 struct Receiver {

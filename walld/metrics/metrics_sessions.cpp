@@ -70,7 +70,7 @@ constexpr MetricRow<OnNode> kOnNodes[] = {
     {Counter, "wallgl_session_partials_merged_total",
      "Pictures of other nodes that the node has merged into its tiles.",
      [](const OnNode& s) { return s.partials_merged(); }},
-    {Counter, "wallgl_session_partials_missed_total", "Pictures of other nodes that did not come within a second.",
+    {Counter, "wallgl_session_partials_missed_total", "Pictures of other nodes that did not come within five seconds.",
      [](const OnNode& s) { return s.partials_missed(); }},
     {Gauge, "wallgl_session_queue_bytes",
      "Bytes that the node has received from the program and not executed yet; at 64 MiB the program waits.",
