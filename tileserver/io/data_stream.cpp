@@ -106,9 +106,8 @@ asio::awaitable<Result<void>> DataStream::greet() {
         partials_ = true;
         source_.set_limits(wire::kMaxFramePayload, wire::kMaxFramePayload);
         host_.stream_open(id_);
-        transport_ = connection_.transport();
         log::info("partials_open stream={} session={} transport={}", id_.value, session_.value,
-                  log::quoted(transport_));
+                  log::quoted(connection_.transport()));
         co_return Result<void>{};
     }
     rank_ = hello.rank();

@@ -14,6 +14,7 @@ namespace wall::tileserver {
 namespace {
 
 constexpr std::size_t kWord = sizeof(std::uint32_t);
+constexpr std::size_t kMostGrowth = 255;  // a byte of lz4 says no more
 enum Field : std::size_t {
     surface,
     sequence,
@@ -92,6 +93,7 @@ Result<std::vector<std::byte>> plain_of(std::span<const std::byte> message) {
             if (coded.size() != plain) return tl::unexpected(wrong("not as long as it says"));
             return std::vector<std::byte>(coded.begin(), coded.end());
         case PartialCodec::lz4: {
+            if (plain > coded.size() * kMostGrowth) return tl::unexpected(wrong("its lz4 is damaged"));
             std::vector<std::byte> out(plain);
             const int got =
                 LZ4_decompress_safe(reinterpret_cast<const char*>(coded.data()), reinterpret_cast<char*>(out.data()),
@@ -157,7 +159,8 @@ Result<Partial> decode_partial(std::span<const std::byte> message) {
     if (!key) return tl::unexpected(key.error());
     const std::uint32_t columns = word_at(message, width), rows = word_at(message, height);
     if (columns == 0 || rows == 0 || columns > wire::kMaxSurfaceExtent || rows > wire::kMaxSurfaceExtent ||
-        std::uint64_t{columns} * rows > kMaxPartialPixels)
+        std::uint64_t{columns} * rows > kMaxPartialPixels || word_at(message, x) > wire::kMaxSurfaceExtent ||
+        word_at(message, y) > wire::kMaxSurfaceExtent)
         return tl::unexpected(wrong("of an area that none can have"));
     const auto plain = plain_of(message);
     if (!plain) return tl::unexpected(plain.error());

@@ -19,7 +19,6 @@ from xserver import XServer  # noqa: E402
 QUIET = {"LP_NUM_THREADS": "0"}
 SIZE = 320, 240  # of a tile
 MARCH = (build_folder() / "examples" / "march", "--cells", "24", "--size", "600x400")
-GEARS = ("glxgears", "-geometry", "600x400")
 FRAME = 4
 
 
@@ -83,7 +82,7 @@ class ProgramsThatAreDealt(unittest.TestCase):
     def test_a_node_that_draws_may_go(self) -> None:
         wall = self.wall_of(2)
         app, session = self.start(wall, *MARCH)
-        before = self.picture(wall, session, 2)
+        self.picture(wall, session, 2)
         wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
         wall.daemons["draws0"].kill()
         wall.daemons["draws0"].wait()
@@ -91,7 +90,6 @@ class ProgramsThatAreDealt(unittest.TestCase):
         wall.wait(session, 10)
         wall.hold(session)
         after = self.picture(wall, session, 1)
-        self.assertEqual(before.shape, after.shape)
         frame = next(s for s in wall.sessions() if s["id"] == session)["surfaces"][0]["frame"]
         expected = self.without(frame)
         self.assertEqual(int((after != expected).any(axis=2).sum()), 0)

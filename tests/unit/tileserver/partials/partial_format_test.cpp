@@ -152,6 +152,8 @@ TEST(APartialPicture, ThatIsDamagedIsRefused) {
     EXPECT_THAT(error_of(std::span(good).first(good.size() - 1)), HasSubstr("not as long"));
     EXPECT_THAT(error_of(with(6, 0)), HasSubstr("area"));
     EXPECT_THAT(error_of(with(7, 1u << 30)), HasSubstr("area"));
+    EXPECT_THAT(error_of(with(4, 0x7fffffff)), HasSubstr("area")) << "it would end beyond all numbers";
+    EXPECT_THAT(error_of(with(5, static_cast<std::uint32_t>(-1))), HasSubstr("area"));
     EXPECT_THAT(error_of(with(9, 0x20707a67)), HasSubstr("codec is not known"));
     EXPECT_THAT(error_of(with(9, static_cast<std::uint32_t>(PartialCodec::lz4))), HasSubstr("damaged"));
     EXPECT_THAT(error_of(with(10, 0xffffffff)), HasSubstr("larger"));
