@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr int kWidth = 160, kHeight = 120;
-constexpr geom::Rect kWindow{0, 0, kWidth, kHeight}, kLeft{0, 0, 67, kHeight}, kRight{67, 0, 93, kHeight};
+constexpr geom::Rect kLeft{0, 0, 67, kHeight}, kRight{67, 0, 93, kHeight};
 constexpr SurfaceId kSurface{1};
 /// Both receivers.
 constexpr std::uint64_t kPartial = std::uint64_t{1} << wire::kPartialSlot | 3;
