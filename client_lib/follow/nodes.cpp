@@ -89,6 +89,11 @@ void Nodes::forget_others(const Welcome& welcome) {
     }
 }
 
+void Nodes::forget_all() {
+    for (const auto& node : nodes_) connect({.node = node->index, .address = {}, .ticket = {}, .up = false});
+    events_.lost();
+}
+
 void Nodes::connect_and_wait(std::span<const NodeInfo> infos) {
     for (const NodeInfo& info : infos) {
         if (!goes_on(info)) connect(info);

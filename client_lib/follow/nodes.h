@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "client_lib/follow/kept_content.h"
 #include "client_lib/follow/node.h"
 #include "client_lib/geometry/target_layers.h"
 #include "client_lib/link/parallel.h"
@@ -51,6 +52,8 @@ public:
     /// The node, as walld names it now, is another one than before: what it held is gone.
     void connect(const NodeInfo& info);
     /// Of a walld that came back: nodes that it does not have any more go.
+    /// The wall is another one: nothing is left of these nodes.
+    void forget_all();
     void forget_others(const Welcome& welcome);
     /// The same as connect() for several at once, but for those that are connected to that very process; waits until
     /// something has come of each, with the lock held.
@@ -85,6 +88,8 @@ public:
         send(node);
         return node.stream->wait_reply(request, limit_ms);
     }
+    /// What nodes drew that are not there any more (kept_content.h).
+    KeptContents& kept() { return kept_; }
     /// Batches and mirrors may be half made: every node begins again at time zero.
     void distrust();
 
@@ -107,6 +112,7 @@ private:
     Transport transport_;
     std::vector<std::unique_ptr<Node>> nodes_;  ///< by index
     std::vector<TargetLayer> everywhere_;
+    KeptContents kept_;
     SessionId session_;
     bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
     RequestId last_request_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/follow/object_sender.h"
 
+#include <functional>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -17,6 +18,31 @@ constexpr int kQuestionLimitMs = 1500;  // the node may be waiting for another p
 
 /// Whether an answer can be expected soon.
 bool may_be_asked(const Node& node) { return node.answers() && !node.slow && !node.asks_unanswered; }
+
+/// Packs the object's drawn content, as the node has it. False: the node does not answer.
+bool ask_drawn(Nodes& nodes, Node& holder, const Object& object, wire::PackBuffer& out,
+               const std::function<void()>& packed) {
+    bool answered = true;
+    const auto ask = [&](const auto& pack) -> std::optional<std::vector<std::byte>> {
+        if (!answered) return std::nullopt;
+        auto answer = nodes.ask_now(holder, "drawn content", kDrawnLimitMs, pack);
+        answered = answer.has_value();
+        return answer;
+    };
+    object.pack_drawn(ask, out, packed);
+    if (!answered) holder.slow = true;  // until it answers to a frame
+    return answered;
+}
+
+bool keep_drawn(Nodes& nodes, Node& holder, const Object& object) {
+    ObjectSender(nodes, holder, holder.batch).send(object);  // what was changed since it was drawn
+    KeptContent kept;
+    const auto end_part = [&] { kept.ends.push_back(kept.commands.mark()); };
+    if (!ask_drawn(nodes, holder, object, kept.commands, end_part)) return false;
+    end_part();
+    nodes.kept().keep(object.id, std::move(kept));
+    return true;
+}
 
 /// What is drawn now the node does not draw.
 void lose_images(Node& node, const DrawSource& source) {
@@ -66,23 +92,27 @@ void ObjectSender::fetch(const Object& object, bool again) {
     }
     if (later) return;
     node_.hollow.erase(object.id);
+    if (send_kept(object)) return;
     log(LogLevel::warn, "event=drawn_content_lost object=%u", object.id.value);
 }
 
 bool ObjectSender::fetch_from(Node& holder, const Object& object) {
     ObjectSender(nodes_, holder, holder.batch).send(object);  // what was changed since it was drawn
-    bool answered = true;
-    const auto ask = [&](const auto& pack) -> std::optional<std::vector<std::byte>> {
-        if (!answered) return std::nullopt;
-        auto answer = nodes_.ask_now(holder, "drawn content", kDrawnLimitMs, pack);
-        answered = answer.has_value();
-        return answer;
-    };
-    object.pack_drawn(ask, buffer_, [this] {
+    return ask_drawn(nodes_, holder, object, buffer_, [this] {
         if (buffer_.bytes() >= kObjectBatchBytes) send_off();
     });
-    if (!answered) holder.slow = true;  // until it answers to a frame
-    return answered;
+}
+
+bool ObjectSender::send_kept(const Object& object) {
+    const auto kept = nodes_.kept().take(object.id);
+    if (!kept) return false;
+    wire::PackMark first;
+    for (const wire::PackMark& end : kept->ends) {
+        buffer_.append(kept->commands, first, end);
+        first = end;
+        if (buffer_.bytes() >= kObjectBatchBytes) send_off();
+    }
+    return true;
 }
 
 /// One short round trip, for which the session's mutex stays taken. True: the node has the object now. False: send it;
@@ -128,6 +158,17 @@ std::size_t bring_up_to_date(Nodes& nodes, Node& node, Mirror& mirror, const Dra
     source.objects.for_each_used([&](const Object& object) { sender.send(object); });
     if (node.hollow.empty()) mirror.used = source.used;
     return sender.bytes();
+}
+
+void keep_drawn(Nodes& nodes) {
+    for_each_share_group([&](ShareGroup& share) {
+        std::lock_guard lock(share.mutex);
+        for (const auto& [id, object] : share.by_id) {
+            if (!object->is_drawn()) continue;
+            for (const auto& holder : nodes)
+                if (holder->answers() && holder->holds(id) && keep_drawn(nodes, *holder, *object)) break;
+        }
+    });
 }
 
 void note_used(Node& follower, Mirror& mirror, const DrawSource& source, wire::PackBuffer& buffer) {

@@ -28,6 +28,8 @@ private:
     void fetch(const Object& object, bool again);
     /// False: it does not answer.
     bool fetch_from(Node& holder, const Object& object);
+    /// What was read back from the nodes of a wall that the program has left.
+    bool send_kept(const Object& object);
     void send_off();
 
     Nodes& nodes_;
@@ -46,6 +48,10 @@ void bring_drawn(Nodes& nodes, const DrawSource& source);
 /// bytes; full batches among them have been sent.
 std::size_t bring_up_to_date(Nodes& nodes, Node& node, Mirror& mirror, const DrawSource& source,
                              wire::PackBuffer& buffer);
+
+/// Reads back what only nodes have, of all objects of the process, before the program leaves their wall
+/// (kept_content.h).
+void keep_drawn(Nodes& nodes);
 
 /// For a block that is kept: notes in `follower.object_stamps` what drawing with the context uses, and packs the values
 /// that go with the block.

@@ -6,6 +6,7 @@
 
 #include "client_lib/follow/block_sender.h"
 #include "client_lib/follow/frame_wait.h"
+#include "client_lib/follow/object_sender.h"
 #include "client_lib/link/pacing.h"
 #include "client_lib/process/log.h"
 #include "client_lib/process/process.h"
@@ -66,7 +67,7 @@ ClientSession::ClientSession(std::unique_ptr<ControlLink> control)
     : control_(std::move(control)), sort_scratch_(std::make_unique<SortScratch>()) {
     if (group_) control_->on_end([this](const std::string& why) { nodes_.give_up_all(why); });
     std::unique_lock lock(mutex_);
-    adopt(control_->welcome());
+    adopt(control_->welcome(), false);
     nodes_.wait_for_attempts(lock, kStartLimit);
 }
 
@@ -101,11 +102,12 @@ void ClientSession::finish() {
 
 // The first welcome, or that of a walld that came back. A node that has the session under the ticket that it has given
 // before goes on with its stream; what the others have of it is gone.
-void ClientSession::adopt(const Welcome& welcome) {
-    const bool goes_on = id_ == welcome.session;
+void ClientSession::adopt(const Welcome& welcome, bool moved) {
+    const bool goes_on = !moved && id_ == welcome.session;
     bool anew = false;
     id_ = welcome.session;
     nodes_.set_session(id_);
+    if (moved) nodes_.forget_all();
     for (const TileInfo& tile : welcome.tiles) nodes_.at(tile.node);  // also those that are not up
     nodes_.forget_others(welcome);
     for (const NodeInfo& info : welcome.nodes) {
@@ -114,11 +116,13 @@ void ClientSession::adopt(const Welcome& welcome) {
         anew = anew || !same;
     }
     if (anew) surfaces_.ask_to_redraw();
+    if (moved) surfaces_.place_anew();
 }
 
 void ClientSession::take_events() {
     auto events = control_->take_events();
-    if (events.reconnected) adopt(*events.reconnected);
+    moving_ = moving_ || events.asked_to_move;
+    if (events.reconnected) adopt(*events.reconnected, events.moved);
     for (const NodeInfo& info : events.node_changes) {
         if (group_ && info.up) continue;  // comes with a placement
         if (nodes_.goes_on(info)) continue;
@@ -128,6 +132,15 @@ void ClientSession::take_events() {
     nodes_.keep_connected();
     for (const Placement& placement : events.placements) surfaces_.take(placement);
     surfaces_.adopt_placements();
+    if (moving_ && !surfaces_.in_frame()) leave_wall();
+}
+
+/// For another one, which has taken the program.
+void ClientSession::leave_wall() {
+    moving_ = false;
+    keep_drawn(nodes_);
+    if (control_->go()) take_events();
+    else nodes_.kept().clear();
 }
 
 // ---- surfaces ----
@@ -242,6 +255,8 @@ void ClientSession::delete_object(ContextId context, ClientName object) {
         if (node.object_stamps.erase(object) != 0) glapi::pack::ObjectDelete(buffer, object);
         node.hollow.erase(object);
     });
+    std::lock_guard lock(mutex_);
+    nodes_.kept().forget(object);
 }
 
 void ClientSession::destroy_context(ContextId context) {

@@ -115,8 +115,9 @@ public:
 private:
     explicit ClientSession(std::unique_ptr<ControlLink> control);
     StreamEvents stream_events();
-    void adopt(const Welcome& welcome);
+    void adopt(const Welcome& welcome, bool moved);
     void take_events();
+    void leave_wall();
     std::vector<NodeIndex> swap_nodes(const ClientSurface& surface);
     int reply_timeout_ms() const;
     /// Runs `body` with the mutex held. Where it throws, batches and mirrors may be half made: the nodes' streams fail
@@ -141,6 +142,7 @@ private:
     std::mutex mutex_;  // guards what follows
     SyncObjects sync_{group_ ? group_->members : 1};
     SessionId id_;
+    bool moving_ = false;  ///< another wall has taken the program
     OpenSurfaces open_surfaces_;
     Nodes nodes_{stream_events()};
     NodeUpdater updater_{nodes_};

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::chrono::seconds kPlacementTimeout{2};
 
-bool in_frame(const ClientSurface& surface) { return surface.drawn && surface.frame > 0; }
+bool is_in_frame(const ClientSurface& surface) { return surface.drawn && surface.frame > 0; }
 
 /// What was drawn for some is missing on others: tiles have changed, or who draws them.
 bool others(std::span<const TargetLayer> before, std::span<const TargetLayer> now) {
@@ -103,7 +103,7 @@ void Surfaces::begin_frame(ClientSurface& surface) {
         report_window(surface);
         return adopt_agreed(surface);
     }
-    if (in_frame(surface)) return;
+    if (is_in_frame(surface)) return;
     adopt_placement(surface);
     follow_window(surface);
     if (surface.drawn) return;
@@ -117,6 +117,22 @@ void Surfaces::begin_frame(ClientSurface& surface) {
 
 void Surfaces::adopt_placements() {
     for (auto& [id, surface] : open_) adopt_placement(*surface);
+}
+
+bool Surfaces::in_frame() const {
+    return std::ranges::any_of(open_, [](const auto& entry) { return is_in_frame(*entry.second); });
+}
+
+void Surfaces::place_anew() {
+    for (auto& [id, surface] : open_) {
+        surface->layout.layers.clear();  // no place of the old wall means anything
+        surface->hidden.reset();
+        surface->tiles.reset();
+        ++surface->layout.version;
+        if (surface->options.visible) surface->next = control_.wait_placement(id, kPlacementTimeout);
+    }
+    adopt_placements();
+    place_off_wall();
 }
 
 /// And how it is shown to two eyes, of which apply_layout() alone changes nothing.
@@ -259,7 +275,7 @@ void Surfaces::follow_window(ClientSurface& surface) {
 
 // Only between two frames, so that none mixes two layouts. What the last frame shows was drawn for the old one.
 void Surfaces::adopt_placement(ClientSurface& surface) {
-    if (!surface.next || in_frame(surface)) return;
+    if (!surface.next || is_in_frame(surface)) return;
     const Placement placement = *std::exchange(surface.next, std::nullopt);
     const auto before = surface.layout.layers;
     const bool moved = placement.rect != surface.layout.rect || placement.stereo != surface.stereo;

@@ -35,6 +35,10 @@ public:
     void draw_whole(ClientSurface& surface);
     /// The same for surfaces that are between two frames.
     void adopt_placements();
+    /// Among the tiles of another wall, which waits until walld has said where.
+    void place_anew();
+    /// Whether any of them is being drawn.
+    bool in_frame() const;
     /// A node came or went: pixel buffers whose node is gone go to another one, and so do those that had none; so do
     /// the hidden parts of windows.
     void place_off_wall();

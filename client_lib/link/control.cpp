@@ -14,13 +14,12 @@
 
 #include "client_lib/link/node_greeting.h"
 #include "client_lib/link/remaining_time.h"
+#include "client_lib/link/walld_greeting.h"
 #include "client_lib/process/log.h"
 #include "client_lib/process/process.h"
 #include "client_lib/process/stats.h"
 #include "common/base/address.h"
 #include "common/base/quoted.h"
-#include "common/base/trusted_server.h"
-#include "common/wire/limits.h"
 
 namespace wall::client {
 namespace {
@@ -31,106 +30,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kLeaveLimit{1000};
 constexpr milliseconds kTick{1000};      // statistics are written and told
 constexpr milliseconds kTryAgain{200};   // a lost link, over which the wall may be right again within two seconds
-constexpr std::size_t kLengthBytes = 4;  // in front of every envelope, little endian
-constexpr std::size_t kReadChunk = 16 << 10;
 constexpr std::size_t kMaxOffered = 64;  // placements of a surface that does not draw; only the newest ones matter
-
-void append_framed(std::string& out, const std::string& envelope) {
-    const auto size = static_cast<std::uint32_t>(envelope.size());
-    for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<char>(size >> shift & 0xff));
-    out += envelope;
-}
-
-std::uint32_t framed_size(const std::string& in) {
-    std::uint32_t size = 0;
-    for (std::size_t i = 0; i < kLengthBytes; ++i) size |= std::uint32_t{static_cast<unsigned char>(in[i])} << 8 * i;
-    return size;
-}
-
-/// The first whole message is cut off `inbox`; nothing if it is not complete yet.
-Result<std::optional<FromWalld>> cut_message(std::string& inbox) {
-    if (inbox.size() < kLengthBytes) return std::nullopt;
-    const auto size = framed_size(inbox);
-    if (size > wire::kMaxControlMessage) return fail("oversized message from walld");
-    if (inbox.size() - kLengthBytes < size) return std::nullopt;
-    auto message = decode_from_walld(std::string_view(inbox).substr(kLengthBytes, size));
-    inbox.erase(0, kLengthBytes + size);
-    if (!message) return tl::unexpected(message.error());
-    return std::optional<FromWalld>(std::move(*message));
-}
-
-Result<void> send_all(int fd, const std::string& bytes, Clock::time_point deadline) {
-    std::size_t sent = 0;
-    while (sent < bytes.size()) {
-        const ssize_t n = ::send(fd, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
-        if (n > 0) {
-            sent += static_cast<std::size_t>(n);
-            continue;
-        }
-        if (errno == EINTR) continue;
-        pollfd p{fd, POLLOUT, 0};
-        if (errno != EAGAIN) return fail(strerror(errno));
-        if (::poll(&p, 1, remaining_ms(deadline)) == 0) return fail("no answer in time");
-    }
-    return {};
-}
-
-/// Appends what can be read. False at the end of the stream.
-Result<bool> receive_some(int fd, std::string& inbox) {
-    char chunk[kReadChunk];
-    const ssize_t n = ::recv(fd, chunk, sizeof chunk, MSG_DONTWAIT);
-    if (n > 0) inbox.append(chunk, static_cast<std::size_t>(n));
-    if (n == 0) return false;
-    if (n < 0 && errno != EAGAIN && errno != EINTR) return fail(strerror(errno));
-    return true;
-}
-
-Result<FromWalld> receive_message(int fd, std::string& inbox, Clock::time_point deadline) {
-    for (;;) {
-        auto message = cut_message(inbox);
-        if (!message) return tl::unexpected(message.error());
-        if (*message) return std::move(**message);
-        pollfd p{fd, POLLIN, 0};
-        if (::poll(&p, 1, remaining_ms(deadline)) == 0) return fail("no answer in time");
-        const auto more = receive_some(fd, inbox);
-        if (!more) return tl::unexpected(more.error());
-        if (!*more) return fail("closed the connection");
-    }
-}
-
-struct Opened {
-    UniqueFd fd;
-    Welcome welcome;
-    std::string rest;  ///< bytes that came after the welcome
-    std::string over;  ///< why the session that was to go on does not, and never will; then nothing else means anything
-};
-
-Result<Opened> greet(const Hello& hello, const std::string& address, milliseconds limit) {
-    const auto deadline = Clock::now() + limit;
-    auto fd = connect_to(address, static_cast<int>(limit.count()));
-    if (!fd)
-        return fail("the wall is not there: " + fd.error().message +
-                    " (is walld running? WALLGL_WALLD names its address)");
-    if (auto trusted = check_server(fd->get(), wall_user_from_environment()); !trusted)
-        return fail("walld at " + address + " is not walld: " + trusted.error().message +
-                    " (WALLGL_WALLD_USER names walld's user)");
-    Opened opened{std::move(*fd), {}, {}, {}};
-    std::string bytes;
-    append_framed(bytes, encode(hello));
-    if (auto sent = send_all(opened.fd.get(), bytes, deadline); !sent)
-        return fail("walld at " + address + ": " + sent.error().message);
-    auto answer = receive_message(opened.fd.get(), opened.rest, deadline);
-    if (!answer) return fail("walld at " + address + ": " + answer.error().message);
-    if (const auto* refused = std::get_if<Refused>(&*answer)) {
-        if (!refused->over) return fail("walld at " + address + " refused: " + refused->reason);
-        opened.over = refused->reason;
-        return opened;
-    }
-    auto* welcome = std::get_if<Welcome>(&*answer);
-    if (!welcome) return fail("walld at " + address + " does not speak this protocol");
-    opened.welcome = std::move(*welcome);
-    return opened;
-}
 
 std::string environment(const char* name) {
     const char* value = secure_getenv(name);
@@ -373,6 +273,8 @@ void ControlLink::serve() {
         if (fds[0].revents) [[maybe_unused]]
             const auto n = ::read(wake_fd_.get(), &count, sizeof count);
         if (fds[1].revents && !read_some()) return;
+        attend_move();
+        if (!fd_) return;
         if (Clock::now() >= next_tick) {
             stats().write();
             tell_traffic();
@@ -461,6 +363,9 @@ bool ControlLink::handle(FromWalld message) {
         if (const auto found = surfaces_.find(note->surface); found != surfaces_.end())
             found->second.note = std::move(note->note);
         return true;  // nobody waits for that
+    } else if (auto* move = std::get_if<MoveRequest>(&message)) {
+        move_to_ = std::move(move->address);
+        return true;
     } else if (std::holds_alternative<std::monostate>(message)) {
         return true;
     } else if (auto* close = std::get_if<CloseRequest>(&message)) {
@@ -576,8 +481,10 @@ void ControlLink::on_lost(const std::string& why) {
     log(LogLevel::error, "walld_lost address=%s why=%s", in_quotes(address_).c_str(), in_quotes(why).c_str());
     fd_.reset();
     inbox_.clear();
+    move_.reset();
     {
         std::lock_guard lock(mutex_);
+        if (going_ == Going::asked) going_ = Going::no;
         outbox_.clear();
         up_ = heard_ = asked_ = silent_ = false;
         events_.lost = true;
@@ -620,26 +527,36 @@ bool ControlLink::reconnect() {
         return false;
     }
     log(LogLevel::info, "walld_reconnected session=%u", opened->welcome.session.value);
-    fd_ = std::move(opened->fd);
-    inbox_ = std::move(opened->rest);
-    {
-        std::lock_guard lock(mutex_);
-        up_ = true;
-        auto placements = std::exchange(events_, {}).placements;
-        if (hello_.group) events_.placements = std::move(placements);  // agreed is agreed
-        events_.lost = true;
-        session_ = opened->welcome.session;
-        take_welcome(opened->welcome);
-        events_.reconnected = std::move(opened->welcome);
-        placements_.clear();
-        for (auto& [id, surface] : surfaces_) {
-            surface.awaited = 0;  // nobody waits for these answers: the program has to draw again
-            queue(encode_surface_open(id, surface.width, surface.height, surface.title, surface.restore()));
-            surface.offered.clear();  // the new walld counts its versions from 1
-        }
-        has_events_ = true;
-    }
+    take_up(std::move(*opened), false);
     return take_messages();
+}
+
+/// From now on the link is that one, and the wall what it says.
+void ControlLink::take_up(Greeted greeted, bool moved) {
+    fd_ = std::move(greeted.fd);
+    inbox_ = std::move(greeted.rest);
+    std::lock_guard lock(mutex_);
+    up_ = true;
+    auto before = std::exchange(events_, {});
+    if (hello_.group) events_.placements = std::move(before.placements);  // agreed is agreed
+    events_.lost = true;
+    events_.moved = moved || before.moved;
+    session_ = greeted.welcome.session;
+    take_welcome(greeted.welcome);
+    events_.reconnected = std::move(greeted.welcome);
+    placements_.clear();
+    for (auto& [id, surface] : surfaces_) {
+        surface.awaited = 0;  // nobody waits for these answers: the program has to draw again
+        if (moved) {          // that wall places it anew
+            surface.drawn = surface.wanted = std::nullopt;
+            surface.wanted_version = 0;
+            surface.note.clear();
+        }
+        queue(encode_surface_open(id, surface.width, surface.height, surface.title, surface.restore()));
+        surface.offered.clear();  // the new walld counts its versions from 1
+        surface.noted = 0;
+    }
+    has_events_ = true;
 }
 
 }  // namespace wall::client

@@ -20,6 +20,7 @@
 
 #include "client_lib/link/control_messages.h"
 #include "client_lib/link/member_placements.h"
+#include "client_lib/link/walld_greeting.h"
 #include "client_lib/link/window_messages.h"
 #include "common/base/result.h"
 #include "common/base/unique_fd.h"
@@ -67,9 +68,15 @@ public:
     /// The same for all open windows. Any thread.
     void ask_all_to_redraw();
 
+    /// Goes to the wall that has taken the program up, which takes a moment. False: it stays, as that wall, or the
+    /// program's time to go, is gone.
+    bool go();
+
     struct Events {
         std::vector<Placement> placements;  ///< in order of arrival
         std::vector<NodeInfo> node_changes;
+        bool asked_to_move = false;          ///< another wall has taken the program: go(), between two frames
+        bool moved = false;                  ///< `reconnected` is another wall, of other nodes and tiles
         bool lost = false;                   ///< the link broke; it is being made again
         std::optional<Welcome> reconnected;  ///< the session goes on, or is a new one: what it has of nodes with other
                                              ///< tickets is gone. Open surfaces were announced again
@@ -129,23 +136,40 @@ private:
     void on_lost(const std::string& why);
     bool reconnect();
     void end_group(const std::string& why);
+    void take_up(Greeted greeted, bool moved);
 
-    const Hello hello_;
-    const std::string address_;
+    // ---- of the same thread: to another wall (control_move.cpp) ----
+    /// A wall that has taken the program up, to which it has not gone yet.
+    struct Move {
+        Greeted there;
+        std::string address;
+        Hello hello;
+        std::chrono::steady_clock::time_point until;
+    };
+    void attend_move();
+    void begin_move(const std::string& address);
+    void move_now();
+    Result<Move> other_wall(const std::string& address);
+
+    Hello hello_;          // background thread; what others look at does not change
+    std::string address_;  // background thread
     const Welcome welcome_;
     UniqueFd wake_fd_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> has_events_{false};
 
-    UniqueFd fd_;           // background thread
-    std::string inbox_;     // background thread: bytes of unfinished messages
-    bool refused_ = false;  // background thread: walld has ended the session (an operator did); no second one
+    UniqueFd fd_;               // background thread
+    std::string inbox_;         // background thread: bytes of unfinished messages
+    std::string move_to_;       // background thread: where walld wants the program
+    std::optional<Move> move_;  // background thread
+    bool refused_ = false;      // background thread: walld has ended the session (an operator did); no second one
 
     std::mutex mutex_;  // guards what follows
     std::condition_variable changed_;
     std::string outbox_;
     Events events_;
     bool up_ = true;
+    enum class Going : std::uint8_t { no, asked, gone } going_ = Going::no;
     bool heard_ = false;   // since the last tick
     bool asked_ = false;   // for a sign of life
     bool silent_ = false;  // none has come: nobody waits for walld until it says something

@@ -19,7 +19,8 @@ constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_re
                                   surface_adopted = 5, close_refused = 6, client_stats = 7, placement_noted = 8,
                                   member_leaves = 9, client_welcome = 10, refused = 11, placement = 12, node_up = 13,
                                   node_down = 14, close_request = 15, adoption_noted = 16, tiles_changed = 17,
-                                  placement_agreed = 18, ping = 50, surface_note = 52;
+                                  placement_agreed = 18, move_answer = 19, move_request = 27, ping = 50,
+                                  surface_note = 52;
 }
 
 void put_string(pbf_writer& out, protozero::pbf_tag_type tag, std::string_view text) {
@@ -278,6 +279,15 @@ CloseRequest read_close(pbf_reader in) {
     return close;
 }
 
+MoveRequest read_move(pbf_reader in) {
+    MoveRequest move;
+    while (in.next()) {
+        if (in.tag() == 1) move.address = read_string(in);
+        else in.skip();
+    }
+    return move;
+}
+
 /// AdoptionNoted and PlacementAgreed: a surface and a version.
 template <class Message>
 Message read_version(pbf_reader in) {
@@ -323,6 +333,7 @@ FromWalld read_envelope(pbf_reader in) {
             case envelope::node_up: message = read_node(read_message(in), true); break;
             case envelope::node_down: message = read_node(read_message(in), false); break;
             case envelope::close_request: message = read_close(read_message(in)); break;
+            case envelope::move_request: message = read_move(read_message(in)); break;
             case envelope::adoption_noted: message = read_version<AdoptionNoted>(read_message(in)); break;
             case envelope::surface_note: message = read_note(read_message(in)); break;
             case envelope::tiles_changed: message = read_tiles(read_message(in)); break;
@@ -395,6 +406,14 @@ std::string encode_surface_adopted(SurfaceId id, std::uint32_t layout_version, s
 
 std::string encode_close_refused(SurfaceId id) {
     return in_envelope(envelope::close_refused, [&](pbf_writer& out) { out.add_uint32(1, id.value); });
+}
+
+std::string encode_move_answer(std::string_view refused) {
+    std::string answer, bytes;
+    pbf_writer out(answer);
+    put_string(out, 1, refused);
+    pbf_writer(bytes).add_message(envelope::move_answer, answer);  // also an empty one
+    return bytes;
 }
 
 std::string encode(const Traffic& traffic) {

@@ -142,9 +142,14 @@ struct CloseRequest {
     std::string reason;
 };
 
+/// An operator wants the program on another wall.
+struct MoveRequest {
+    std::string address;  ///< unix:PATH
+};
+
 /// A message from walld; nothing for one that this version does not know.
 using FromWalld = std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted,
-                               SurfaceNote, TilesChanged, PlacementAgreed>;
+                               SurfaceNote, TilesChanged, PlacementAgreed, MoveRequest>;
 
 // One encoded Envelope each, without the length in front.
 std::string encode(const Hello& hello);
@@ -156,6 +161,8 @@ std::string encode_surface_resize(SurfaceId id, std::uint32_t width, std::uint32
 std::string encode_surface_close(SurfaceId id);
 std::string encode_surface_adopted(SurfaceId id, std::uint32_t layout_version, std::uint32_t frame);
 std::string encode_close_refused(SurfaceId id);
+/// `refused`: why the program stays; empty: it has moved.
+std::string encode_move_answer(std::string_view refused);
 std::string encode(const Traffic& traffic);
 /// `begun`: the frame of that surface that has begun and is too late for the placement; 0: it is not.
 std::string encode_placement_noted(SurfaceId id, std::uint32_t layout_version, std::uint32_t begun);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -111,5 +112,8 @@ struct ShareGroup {
     /// Stamp of the latest change of any object, so that a look at one number tells that there is nothing to send.
     std::atomic<std::uint64_t> last_change{0};
 };
+
+/// Calls `use` with every group of the process. None of their mutexes is held.
+void for_each_share_group(const std::function<void(ShareGroup&)>& use);
 
 }  // namespace wall::client

@@ -37,8 +37,9 @@ constexpr const char* kSaid = "said";               // code of a failure of whic
 constexpr std::chrono::seconds kLimit{10};          // for an answer
 constexpr std::chrono::seconds kPictureLimit{120};  // it may wait in line, and a large one takes long to encode
 constexpr std::chrono::seconds kCloseLimit{
-    65};                                       // a program that is asked to close may take as long as wall.toml allows
-constexpr std::chrono::seconds kWaitSlack{2};  // on top of what walld itself waits
+    65};                                        // a program that is asked to close may take as long as wall.toml allows
+constexpr std::chrono::seconds kMoveLimit{40};  // what was drawn comes back from the nodes first
+constexpr std::chrono::seconds kWaitSlack{2};   // on top of what walld itself waits
 
 struct Options {
     Walld walld{net::kDefaultWalld, {}};
@@ -396,6 +397,17 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
         "in the program's units: what is so far from its camera lies in the wall's plane, what is nearer "
         "comes out of it (0: the middle of what it draws)");
     stereo->add_flag("--off", o.off, "both eyes see the program's own picture again");
+    auto* move = verb("move", "puts a program, with all that it has drawn, on another wall while it runs",
+                      tell(
+                          o, "move",
+                          [&o] {
+                              return json{{"id", o.id}, {"to", o.name}};
+                          },
+                          kMoveLimit));
+    add_id(move, o);
+    move->add_option("--to", o.name,
+                     "the other wall: unix:PATH of its control socket (or of an agent of it) on the program's machine")
+        ->required();
     auto* waiting = verb("wait", "returns when a frame is shown on all tiles", [&o] { return wait(o); });
     add_id(waiting, o);
     waiting->add_option("--frame", o.frame, "its number")->required()->check(CLI::PositiveNumber);

@@ -402,6 +402,7 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
               log::quoted(hello.group().name()), rank);
     something_changed();
     std::string reason;
+    bool moved = false;
     while (reason.empty()) {
         auto message = co_await connection->receive();
         if (!serves({id, rank}, connection)) co_return;  // the program has come on another one
@@ -411,12 +412,18 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
             reason = "closed";
             break;
         }
+        if (message && message->has_move_answer() && message->move_answer().refused().empty()) {
+            wall_.move_answered(id, message->move_answer());
+            reason = "it has moved to another wall";
+            moved = true;
+            break;
+        }
         const auto result = message ? client_says({id, rank}, *message) : Result<void>(tl::unexpected(message.error()));
         if (!result) reason = result.error().message;
         if (message && !result) refuse(connection, reason);
         something_changed();
     }
-    const bool may_come = connection->lost() && !who.machine.empty();
+    const bool may_come = !moved && connection->lost() && !who.machine.empty();
     clients_.erase({id, rank});
     if (may_come) {
         wall_.await_again(id, rank, Clock::now());
@@ -452,6 +459,7 @@ Result<void> ControlServer::client_says(const ClientId& client, const proto::Env
     else if (message.has_surface_adopted()) wall_.adopt_placement(session, message.surface_adopted(), Clock::now());
     else if (message.has_client_stats()) wall_.client_reports(session, rank, message.client_stats(), Clock::now());
     else if (message.has_close_refused()) wall_.cannot_close(session, SurfaceId(message.close_refused().surface()));
+    else if (message.has_move_answer()) wall_.move_answered(session, message.move_answer());
     else if (message.has_surface_close())
         wall_.close_surface(session, SurfaceId(message.surface_close().surface()), rank);
     else if (message.has_placement_noted()) wall_.placement_noted(session, rank, message.placement_noted());

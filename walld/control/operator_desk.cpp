@@ -19,7 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int64_t kMaxWait = 600'000;  // ms
+constexpr std::int64_t kMaxWait = 600'000;             // ms
+constexpr auto kMoveLimit = std::chrono::seconds(30);  // more than a program takes to say why it stays
 constexpr auto kComesBack = std::chrono::seconds(3);
 
 Outcome<Target> target_of(const Asked& asked) {
@@ -96,6 +97,7 @@ const OperatorDesk::Row OperatorDesk::kVerbs[] = {
     {"step", Need::own, &OperatorDesk::step},
     {"weight", Need::operate, &OperatorDesk::weight},
     {"stereo", Need::own, &OperatorDesk::stereo},
+    {"move", Need::own, &OperatorDesk::move},
     {"record", Need::own, &OperatorDesk::record},
     {"pattern", Need::operate, &OperatorDesk::pattern},
     {"save_layout", Need::operate, &OperatorDesk::save_layout},
@@ -275,6 +277,32 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::stereo(const Asked& asked) {
         .and_then(
             [&](const Target& target) { return wall_.set_stereo(target, *on ? std::optional(stereo) : std::nullopt); })
         .map(done);
+}
+
+/// Answers when the program is on the other wall, or says why it stays.
+asio::awaitable<Outcome<Answer>> OperatorDesk::move(const Asked& asked) {
+    const auto to = text_of(asked.arguments, "to");
+    if (!to) co_return tl::unexpected(to.error());
+    if (!to->starts_with("unix:"))
+        co_return refuse(RefusalKind::invalid,
+                         "to: expected the other wall's control socket on the program's machine, "
+                         "such as unix:/run/wallgl/control.sock, got '" +
+                             *to + "'");
+    const auto target = target_of(asked);
+    if (!target) co_return tl::unexpected(target.error());
+    const SessionId session = target->session;
+    if (const auto told = wall_.ask_to_move(*target, *to); !told) co_return tl::unexpected(told.error());
+    for (const auto until = Clock::now() + kMoveLimit;;) {
+        if (const auto why = wall_.take_move_answer(session)) {
+            if (why->empty()) co_return Answer{{{"moved", *to}}, {}};
+            co_return refuse(RefusalKind::conflict, "the program stays: " + *why);
+        }
+        if (!wall_.sessions().contains(session))
+            co_return refuse(RefusalKind::not_found, "the program has ended before it could move");
+        if (Clock::now() >= until)
+            co_return refuse(RefusalKind::unavailable, "the program has not answered; it may be stopped");
+        co_await changed_.wait(until);
+    }
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::record(const Asked& asked) {

@@ -88,6 +88,7 @@ private:
     asio::awaitable<Outcome<Answer>> step(const Asked&);
     asio::awaitable<Outcome<Answer>> weight(const Asked&);
     asio::awaitable<Outcome<Answer>> stereo(const Asked&);
+    asio::awaitable<Outcome<Answer>> move(const Asked&);
     asio::awaitable<Outcome<Answer>> record(const Asked&);
     asio::awaitable<Outcome<Answer>> wait(const Asked&);
     asio::awaitable<Outcome<Answer>> layouts(const Asked&);

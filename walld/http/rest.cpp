@@ -33,6 +33,7 @@ constexpr Route kRoutes[] = {
     {"POST", "/api/v1/sessions/*/step", "step", "id"},
     {"POST", "/api/v1/sessions/*/weight", "weight", "id"},
     {"POST", "/api/v1/sessions/*/stereo", "stereo", "id"},
+    {"POST", "/api/v1/sessions/*/move", "move", "id"},
     {"POST", "/api/v1/reload", "reload", nullptr},
     {"POST", "/api/v1/pattern", "pattern", nullptr},
     {"POST", "/api/v1/nodes", "add_node", nullptr},

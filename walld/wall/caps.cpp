@@ -2,38 +2,16 @@
 #include "walld/wall/caps.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 
+#include "common/base/tight_limits.h"
+
 namespace wall::walld {
 namespace {
-
-// walld has no GL headers; these are the limits for which less is not the tighter one.
-constexpr std::array<std::uint32_t, 8> kLargestCounts{
-    0x0B13,  // SMOOTH_POINT_SIZE_GRANULARITY
-    0x0B23,  // SMOOTH_LINE_WIDTH_GRANULARITY
-    0x8A34,  // UNIFORM_BUFFER_OFFSET_ALIGNMENT
-    0x90DF,  // SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT
-    0x919F,  // TEXTURE_BUFFER_OFFSET_ALIGNMENT
-    0x8904,  // MIN_PROGRAM_TEXEL_OFFSET
-    0x8E5E,  // MIN_PROGRAM_TEXTURE_GATHER_OFFSET
-    0x8E5B,  // MIN_FRAGMENT_INTERPOLATION_OFFSET
-};
-constexpr std::array<std::uint32_t, 4> kRanges{
-    0x0B12,  // SMOOTH_POINT_SIZE_RANGE
-    0x0B22,  // SMOOTH_LINE_WIDTH_RANGE
-    0x846D,  // ALIASED_POINT_SIZE_RANGE
-    0x846E,  // ALIASED_LINE_WIDTH_RANGE
-};
-
-bool larger_is_tighter(std::uint32_t limit, int index) {
-    return std::ranges::find(kLargestCounts, limit) != kLargestCounts.end() ||
-           (index == 0 && std::ranges::find(kRanges, limit) != kRanges.end());
-}
 
 /// "4.5 (Compatibility Profile) Mesa" -> {4, 5}
 std::pair<int, int> number_of(const std::string& version) {
@@ -64,7 +42,8 @@ const proto::GlLimit* find(const proto::GlCaps& caps, std::uint32_t name) {
 void tighten(proto::GlLimit& ours, const proto::GlLimit& theirs) {
     for (int i = 0; i < std::min(ours.values_size(), theirs.values_size()); ++i) {
         const double a = ours.values(i), b = theirs.values(i);
-        ours.set_values(i, larger_is_tighter(ours.name(), i) ? std::max(a, b) : std::min(a, b));
+        ours.set_values(i,
+                        larger_is_tighter(ours.name(), static_cast<std::size_t>(i)) ? std::max(a, b) : std::min(a, b));
     }
 }
 

@@ -258,6 +258,13 @@ public:
     void cannot_close(SessionId id, SurfaceId surface);
     void client_reports(SessionId id, Rank rank, const proto::ClientStats& stats, Clock::time_point now);
 
+    // ---- programs that move to other walls (wall_operate.cpp) ----
+    /// `address`: of the other wall's control socket, as the program's machine knows it. What it answers is said by
+    /// take_move_answer() as soon as it is there: empty when the program has gone.
+    Outcome<void> ask_to_move(const Target& target, const std::string& address);
+    void move_answered(SessionId id, const proto::MoveAnswer& answer);
+    std::optional<std::string> take_move_answer(SessionId id);
+
     // ---- recordings (wall_recording.cpp) ----
     /// The session's program is to send its commands to this address (common/base/address.h), too, as to a node. Gives
     /// the ticket (kTicketBytes) that it will show there.
@@ -405,6 +412,7 @@ private:
     std::map<SessionId, ReturningSession> returning_;
     std::optional<Clock::time_point> return_until_;  ///< none: no node has come yet
     bool returns_over_ = false;                      ///< nobody is waited for any more
+    std::map<SessionId, std::string> move_answers_;  ///< of programs that were asked to move; empty: gone
     std::set<SessionId> ended_;                      ///< until then: sessions that nodes may still have
     Counters counters_;
 };

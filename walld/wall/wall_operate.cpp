@@ -166,6 +166,25 @@ Outcome<void> Wall::set_stereo(const Target& target, const std::optional<proto::
     return {};
 }
 
+Outcome<void> Wall::ask_to_move(const Target& target, const std::string& address) {
+    const auto* session = find(target.session);
+    if (!session) return no_session(target.session);
+    if (session->group)
+        return refuse(RefusalKind::conflict, "a parallel program's processes cannot go to another wall together");
+    move_answers_.erase(target.session);
+    proto::MoveRequest request;
+    request.set_address(address);
+    out_.to_client(target.session, make(&proto::Envelope::mutable_move_request, request));
+    return {};
+}
+
+void Wall::move_answered(SessionId id, const proto::MoveAnswer& answer) { move_answers_[id] = answer.refused(); }
+
+std::optional<std::string> Wall::take_move_answer(SessionId id) {
+    auto found = move_answers_.extract(id);
+    return found ? std::optional(std::move(found.mapped())) : std::nullopt;
+}
+
 // ---- layouts ----
 
 WindowName Wall::name_of(const SurfaceKey& key) const {

@@ -71,7 +71,9 @@ proto::Envelope full_welcome() {
 /// walld, as far as one client sees it: a listening socket and one connection.
 class FakeWalld {
 public:
-    FakeWalld() : path_(std::filesystem::temp_directory_path() / ("wallgl_control_" + std::to_string(getpid()))) {
+    FakeWalld()
+        : path_(std::filesystem::temp_directory_path() /
+                ("wallgl_control_" + std::to_string(getpid()) + "_" + std::to_string(++made_))) {
         listen();
     }
     ~FakeWalld() {
@@ -121,6 +123,7 @@ public:
     }
 
 private:
+    static inline int made_ = 0;
     std::filesystem::path path_;
     UniqueFd listener_, peer_;
 };
@@ -156,6 +159,8 @@ ControlLink::Events collect(ControlLink& link, Done done) {
         for (auto& p : some.placements) all.placements.push_back(p);
         for (auto& n : some.node_changes) all.node_changes.push_back(n);
         all.lost |= some.lost;
+        all.moved |= some.moved;
+        all.asked_to_move |= some.asked_to_move;
         if (some.reconnected) all.reconnected = some.reconnected;
         std::this_thread::sleep_for(10ms);
     }
@@ -488,6 +493,64 @@ TEST(ControlLink, ComesBackAfterWalldWasAway) {
     const auto events = collect(*linked.link, [](auto& e) { return e.reconnected.has_value(); });
     ASSERT_TRUE(events.reconnected);
     EXPECT_EQ(events.reconnected->session, SessionId(7));
+}
+
+proto::Envelope move_to(const std::string& address) {
+    proto::Envelope envelope;
+    envelope.mutable_move_request()->set_address(address);
+    return envelope;
+}
+
+TEST(ControlLink, GoesToAnotherWallWhenTheProgramSaysSo) {
+    Linked linked;
+    FakeWalld other;
+    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
+    linked.walld.receive();
+    proto::ClientHello hello;
+    std::thread server([&] { hello = other.welcome(); });
+    linked.walld.send(move_to(other.address()));
+    server.join();
+    EXPECT_EQ(hello.program(), "glxgears");
+    EXPECT_FALSE(hello.has_resume()) << "it is a new one there";
+    EXPECT_FALSE(hello.has_rect()) << "a place on the first wall";
+    const auto asked = collect(*linked.link, [](auto& e) { return e.asked_to_move; });
+    EXPECT_TRUE(asked.asked_to_move);
+    EXPECT_FALSE(asked.reconnected) << "the program has not said that it goes";
+    EXPECT_TRUE(linked.link->go());
+    const auto answer = linked.walld.receive();
+    ASSERT_TRUE(answer.has_move_answer());
+    EXPECT_EQ(answer.move_answer().refused(), "");
+    const auto opened = other.receive().surface_open();
+    EXPECT_EQ(opened.title(), "gears");
+    EXPECT_FALSE(opened.has_restore()) << "the other wall places it";
+    const auto events = collect(*linked.link, [](auto& e) { return e.reconnected.has_value(); });
+    EXPECT_TRUE(events.moved);
+    EXPECT_FALSE(linked.link->go()) << "there is nowhere to go";
+    other.hang_up();  // from now on it comes back to this one
+    EXPECT_EQ(other.welcome().program(), "glxgears");
+}
+
+TEST(ControlLink, StaysWhereTheOtherWallIsNotThere) {
+    Linked linked;
+    linked.walld.send(move_to("unix:/nowhere/walld.sock"));
+    EXPECT_THAT(linked.walld.receive().move_answer().refused(), HasSubstr("/nowhere/walld.sock"));
+    linked.walld.send(move_to(linked.walld.address()));
+    EXPECT_THAT(linked.walld.receive().move_answer().refused(), HasSubstr("on that wall"));
+    EXPECT_FALSE(linked.link->go());
+    EXPECT_FALSE(linked.link->take_events().asked_to_move);
+}
+
+TEST(ControlLink, TellsAnotherWallNoToken) {
+    auto secretive = some_hello();
+    secretive.token = "secret";
+    Linked linked(secretive);
+    EXPECT_EQ(linked.hello.token(), "secret");
+    FakeWalld other;
+    proto::ClientHello hello;
+    std::thread server([&] { hello = other.welcome(); });
+    linked.walld.send(move_to(other.address()));
+    server.join();
+    EXPECT_EQ(hello.token(), "");
 }
 
 TEST(ControlLink, WhatWalldSaidBeforeItClosedIsReadThoughSomethingIsBeingWritten) {

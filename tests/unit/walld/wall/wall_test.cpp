@@ -375,6 +375,23 @@ TEST_F(TheWall, TellsAProgramHowItsPicturesForTwoEyesAreApart) {
     EXPECT_EQ(wall_.set_stereo({SessionId(7), {}}, stereo).error().kind, RefusalKind::not_found);
 }
 
+TEST_F(TheWall, AsksAProgramToGoToAnotherWallAndKeepsItsAnswer) {
+    join("left");
+    const auto id = open();
+    ASSERT_TRUE(wall_.ask_to_move({id, {}}, "unix:/b/walld.sock"));
+    EXPECT_EQ(last_to_client(id).move_request().address(), "unix:/b/walld.sock");
+    EXPECT_EQ(wall_.take_move_answer(id), std::nullopt) << "it has not said anything yet";
+    proto::MoveAnswer answer;
+    answer.set_refused("no way");
+    wall_.move_answered(id, answer);
+    EXPECT_EQ(wall_.take_move_answer(id), "no way");
+    EXPECT_EQ(wall_.take_move_answer(id), std::nullopt) << "whoever asked has been told";
+    wall_.move_answered(id, answer);
+    ASSERT_TRUE(wall_.ask_to_move({id, {}}, "unix:/c/walld.sock"));
+    EXPECT_EQ(wall_.take_move_answer(id), std::nullopt) << "an answer to an older question is none";
+    EXPECT_EQ(wall_.ask_to_move({SessionId(7), {}}, "unix:/b").error().kind, RefusalKind::not_found);
+}
+
 TEST_F(TheWall, TakesStereoFromAProgramThatComesUnlessItCannotBe) {
     join("left");
     const auto stereo_of = [&](float separation, float screen) {
