@@ -57,9 +57,8 @@ void SemaphoreDestroyCR(Context& c, GLuint name) {
 
 void SemaphorePCR(Context& c, GLuint name) {
     if (!may_hold(c)) return;
-    say(
-        c, true, [=](SyncObjects& own) { return own.semaphore_p(name); },
-        [=](wire::PackBuffer& to) { pack::SemaphoreP(to, name); });
+    c.flush_block();
+    if (const GLenum error = c.session().take_semaphore(c.id, name); error != GL_NO_ERROR) c.error(error);
 }
 
 // Sent at once: somebody may wait for it.

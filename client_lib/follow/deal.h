@@ -54,7 +54,7 @@ struct Deal {
     std::vector<TargetLayer> receivers;
     bool open = false;                 ///< something was dealt and not composed
     bool chosen = false;               ///< `hands` are this frame's
-    std::uint32_t depth_func = 0;      ///< of what is open
+    std::uint32_t by = 0;              ///< how what is open will be composed (composed_by())
     std::uint32_t sequence = 0;        ///< of the last composition
     double cost = 0, cost_before = 0;  ///< elements dealt in this frame, and in the one before
     NodePaces paces;

@@ -17,9 +17,6 @@ namespace {
 /// Of a window; so many a node reads back and sends.
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 24;
 
-/// Nothing is behind this depth, which the depth function decides.
-std::uint32_t farthest(std::uint32_t depth_func) { return depth_func == GL_LESS || depth_func == GL_LEQUAL ? 1 : 0; }
-
 }  // namespace
 
 bool Dealer::may_deal(const ClientSurface& surface) const {
@@ -30,6 +27,13 @@ bool Dealer::may_deal(const ClientSurface& surface) const {
                           layout.rect.height == static_cast<int>(layout.height) && layout.views.empty();
     return wanted_ && !options().broadcast && surface.options.visible && !surface.whole && plain && as_it_is &&
            std::uint64_t{layout.width} * layout.height <= kMostPixels;
+}
+
+/// One program's blending is left alone: by each part that is rounded by itself its picture would become another one.
+/// The processes of a parallel program say by semaphores and barriers what lies over what.
+std::optional<std::uint32_t> Dealer::composition_of(const DrawSource& source, const ClientSurface& surface) const {
+    const auto by = composed_by(source.state, surface.options.format.alpha_bits != 0);
+    return by == GL_BLEND && !group_ ? std::nullopt : by;
 }
 
 /// Who draws in this frame, and how much. Each process of a parallel program has one node.
@@ -79,9 +83,9 @@ std::span<const Dealer::Dealt> Dealer::deal(const DrawSource& source, const Reac
     Deal& deal = surface->deal;
     if (!deal.chosen) choose(*surface);
     if (deal.hands.empty() || source.objects.writes()) return {};
-    const auto func = composed_by(source.state);
-    if (!func) return {};
-    if (deal.open && deal.depth_func != *func) compose(*surface);
+    const auto by = composition_of(source, *surface);
+    if (!by) return {};
+    if (deal.open && deal.by != *by) compose(*surface);
     if (!deal.open) deal.receivers = receivers_of(*surface);
     if (deal.receivers.empty() || deal.receivers.size() > wire::kTileSlots) return {};
     std::uint64_t mask = 0;
@@ -89,7 +93,7 @@ std::span<const Dealer::Dealt> Dealer::deal(const DrawSource& source, const Reac
         if (reach.touches(deal.receivers[i])) mask |= std::uint64_t{1} << i;
     cut(deal, mask != 0 ? mask | kPartialBit : 0, elements, pieces);
     deal.open = true;
-    deal.depth_func = *func;
+    deal.by = *by;
     if (mask != 0) deal.cost += elements;
     return dealt_;
 }
@@ -124,7 +128,7 @@ void Dealer::cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t 
 wire::PackBuffer& Dealer::prepare(Node& node, const DrawSource& source, const Needs& needs) {
     ClientSurface& surface = *source.draw.dealt_surface();
     Deal& deal = surface.deal;
-    const MarkingState marking(source.state, deal.marking);
+    const MarkingState marking(source.state, deal.by, deal.marking);
     wire::PackBuffer& buffer = updater_.prepare(node, source, needs);
     const auto hand = std::ranges::find(deal.hands, node.index, &Deal::Hand::node);
     if (hand != deal.hands.end() && !hand->drew) {
@@ -135,12 +139,13 @@ wire::PackBuffer& Dealer::prepare(Node& node, const DrawSource& source, const Ne
 }
 
 void Dealer::compose(const DrawTarget& target) {
-    if (ClientSurface* const surface = target.dealt_surface()) compose(*surface);
+    if (ClientSurface* const surface = target.dealt_surface()) return compose(*surface);
+    take_held_semaphores();
 }
 
 void Dealer::compose(ClientSurface& surface) {
     Deal& deal = surface.deal;
-    if (!std::exchange(deal.open, false)) return;
+    if (!std::exchange(deal.open, false)) return take_held_semaphores();
     ++deal.sequence;
     std::vector<std::uint32_t> from;
     for (Deal::Hand& hand : deal.hands) {
@@ -154,6 +159,7 @@ void Dealer::compose(ClientSurface& surface) {
         deal.asked.push_back({hand.node, std::exchange(hand.elements, 0), {}});
         deal.asked.back().answer.add(node.stream, request);
     }
+    take_held_semaphores();
     if (from.empty()) return;
     const DrawTarget target(surface);
     for (const auto& [index, slots] : nodes_touched(deal.receivers, std::nullopt)) {
@@ -161,7 +167,7 @@ void Dealer::compose(ClientSurface& surface) {
         if (!node.alive() || !target.goes_to(node)) continue;
         wire::PackBuffer& buffer = nodes_.batch(node, node.batch_context);
         target.describe_to(node);
-        glapi::pack::PartialMerge(buffer, surface.id, deal.sequence, deal.depth_func, static_cast<std::uint32_t>(slots),
+        glapi::pack::PartialMerge(buffer, surface.id, deal.sequence, deal.by, static_cast<std::uint32_t>(slots),
                                   static_cast<std::uint32_t>(slots >> 32), std::as_bytes(std::span(from)));
     }
 }
@@ -174,7 +180,40 @@ void Dealer::pack_begin(wire::PackBuffer& buffer, const ClientSurface& surface) 
               static_cast<std::uint32_t>(layer.pixels.y), static_cast<std::uint32_t>(layer.pixels.width),
               static_cast<std::uint32_t>(layer.pixels.height)})
             words.push_back(word);
-    glapi::pack::PartialBegin(buffer, surface.id, farthest(surface.deal.depth_func), std::as_bytes(std::span(words)));
+    glapi::pack::PartialBegin(buffer, surface.id, surface.deal.by, std::as_bytes(std::span(words)));
+}
+
+bool Dealer::draws_for_others(const OpenSurfaces& windows, const Node& node) {
+    if (!wanted_) return false;
+    return std::ranges::any_of(windows, [&](const auto& window) {
+        Deal& deal = window.second->deal;
+        if (!deal.chosen) choose(*window.second);
+        return std::ranges::find(deal.hands, node.index, &Deal::Hand::node) != deal.hands.end();
+    });
+}
+
+void Dealer::take_semaphore(const OpenSurfaces& windows, ContextId context, std::uint32_t name) {
+    for (auto& node : nodes_) {
+        if (!node->alive()) continue;
+        if (draws_for_others(windows, *node)) {
+            node->held_semaphores.push_back(name);
+            holds_semaphores_ = true;
+            continue;
+        }
+        glapi::pack::SemaphoreP(nodes_.batch(*node, context), name);
+        nodes_.send(*node);
+    }
+}
+
+void Dealer::take_held_semaphores() {
+    if (!std::exchange(holds_semaphores_, false)) return;
+    for (auto& node : nodes_) {
+        if (!node->alive()) continue;
+        for (const std::uint32_t name : std::exchange(node->held_semaphores, {})) {
+            glapi::pack::SemaphoreP(nodes_.batch(*node, node->batch_context), name);
+            nodes_.send(*node);
+        }
+    }
 }
 
 void Dealer::finish_frame(ClientSurface& surface) {

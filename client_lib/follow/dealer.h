@@ -21,8 +21,10 @@ inline constexpr std::uint64_t kPartialBit = std::uint64_t{1} << wire::kPartialS
 
 class Dealer {
 public:
-    /// Both outlive it. `wanted`: programs ask for it (WALLGL_SORT_LAST).
-    Dealer(Nodes& nodes, NodeUpdater& updater, bool wanted) : nodes_(nodes), updater_(updater), wanted_(wanted) {}
+    /// All of them outlive it. `wanted`: programs ask for it (WALLGL_SORT_LAST). `group`: a process of which one this
+    /// is.
+    Dealer(Nodes& nodes, NodeUpdater& updater, bool wanted, const std::optional<Parallel>& group = parallel())
+        : nodes_(nodes), updater_(updater), wanted_(wanted), group_(group) {}
 
     /// One node's part of a draw.
     struct Dealt {
@@ -41,10 +43,18 @@ public:
     void compose(ClientSurface& surface);
     /// A frame of the window is over, composed before.
     void finish_frame(ClientSurface& surface);
+    /// The stream is held on all nodes until the semaphore is above 0, then takes one. What this process is dealt it
+    /// may draw before that, for nobody sees it until it is composed: so processes that blend one behind the other draw
+    /// at the same time. `windows`: all of the process, composed before.
+    void take_semaphore(const OpenSurfaces& windows, ContextId context, std::uint32_t name);
+    /// What else is said to nodes now happens behind them.
+    void take_held_semaphores();
 
 private:
     bool may_deal(const ClientSurface& surface) const;
+    std::optional<std::uint32_t> composition_of(const DrawSource& source, const ClientSurface& surface) const;
     void choose(ClientSurface& surface);
+    bool draws_for_others(const OpenSurfaces& windows, const Node& node);
     static void hear_paces(Deal& deal);
     std::vector<TargetLayer> receivers_of(const ClientSurface& surface) const;
     void cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t pieces);
@@ -53,8 +63,9 @@ private:
     Nodes& nodes_;
     NodeUpdater& updater_;
     const bool wanted_;
-    const std::optional<Parallel>& group_ = parallel();
-    std::vector<Dealt> dealt_;  ///< used again and again
+    const std::optional<Parallel>& group_;
+    std::vector<Dealt> dealt_;       ///< used again and again
+    bool holds_semaphores_ = false;  ///< some node does
 };
 
 }  // namespace wall::client

@@ -83,8 +83,9 @@ struct Node {
     std::shared_ptr<ConnectAttempt> attempt;  ///< one that is being made
     Reopening reopening;
 
-    wire::PackBuffer batch;   ///< being packed
-    ContextId batch_context;  ///< whose
+    std::vector<std::uint32_t> held_semaphores;  ///< that it must take before anything else than what was dealt to it
+    wire::PackBuffer batch;                      ///< being packed
+    ContextId batch_context;                     ///< whose
 
     bool alive() const { return stream && !stream->failed(); }
     /// It keeps what comes in a file: it has no tile, and nothing is asked of it.

@@ -34,6 +34,7 @@ void Nodes::forget(Node& node) {
     find_everywhere();
     forget_content(node);
     node.batch.clear();
+    node.held_semaphores.clear();  // it hears of them when it is introduced again
     node.left_out.clear();
     node.slow = node.asks_unanswered = false;
     node.attempt.reset();

@@ -318,10 +318,21 @@ void ClientSession::introduce(Node& node) {
     nodes_.send(node);
 }
 
+GLenum ClientSession::take_semaphore(ContextId context, std::uint32_t name) {
+    return packing([&] {
+        const GLenum error = sync_.semaphore_p(name);
+        if (error != GL_NO_ERROR || !group_) return error;
+        for (const auto& [id, surface] : open_surfaces_) dealer_.compose(*surface);
+        dealer_.take_semaphore(open_surfaces_, context, name);
+        return error;
+    });
+}
+
 /// The others go on without this process from here on.
 void ClientSession::leave_group() {
     {
         std::lock_guard lock(mutex_);
+        dealer_.take_held_semaphores();
         for (auto& node : nodes_) {
             if (!node->alive()) continue;
             glapi::pack::Leave(nodes_.batch(*node, node->batch_context));

@@ -107,6 +107,8 @@ public:
     /// the stream is held behind it.
     template <class Note, class Pack>
     GLenum synchronize(ContextId context, bool at_once, Note&& note, Pack&& pack);
+    /// glSemaphorePCR: the OpenGL error.
+    GLenum take_semaphore(ContextId context, std::uint32_t name);
 
     std::mutex& mutex() { return mutex_; }
     /// The mutex is held.
@@ -192,6 +194,7 @@ GLenum ClientSession::synchronize(ContextId context, bool at_once, Note&& note, 
 template <class Pack>
 Fence ClientSession::ask_later(Pack&& pack) {
     return packing([&] {
+        dealer_.take_held_semaphores();
         Fence made;
         for (auto& node : nodes_) {
             if (!node->answers()) continue;

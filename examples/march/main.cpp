@@ -13,13 +13,16 @@
 #include <thread>
 #include <vector>
 
-#include "examples/march/team.h"
 #include "examples/march/tetrahedra.h"
+#include "examples/picture.h"
+#include "examples/team.h"
 #include "examples/window.h"
 
 namespace {
 
 using namespace march;
+using example::Rank;
+using example::Team;
 
 constexpr const char* kHelp = R"(march: soft balls by marching tetrahedra, drawn by one process or by several.
 
@@ -41,7 +44,7 @@ At the end it prints frames and triangles a second: of all processes, as seen by
 struct Options {
     int width = 800, height = 600, cells = 64, balls = 12, frames = 0, fps = 0;
     unsigned seed = 1;
-    Rank rank = rank_from_environment();
+    Rank rank = example::rank_from_environment();
     std::string picture;
 };
 
@@ -94,20 +97,6 @@ void draw(const std::vector<Corner>& corners) {
     glEnd();
 }
 
-/// What all have drawn, so behind a barrier.
-void write_picture(const Options& o) {
-    std::vector<unsigned char> pixels(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height) * 3);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, o.width, o.height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
-    std::FILE* file = std::fopen(o.picture.c_str(), "wb");
-    if (!file) return std::perror(o.picture.c_str());
-    std::fprintf(file, "P6\n%d %d\n255\n", o.width, o.height);
-    for (int y = o.height - 1; y >= 0; --y)
-        std::fwrite(&pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) * 3], 3,
-                    static_cast<std::size_t>(o.width), file);
-    std::fclose(file);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -115,7 +104,7 @@ int main(int argc, char** argv) {
     if (argc == 2 && std::strcmp(argv[1], "--help") == 0) return std::fputs(kHelp, stdout), 0;
     if (!parse(argc, argv, o)) return std::fputs(kHelp, stderr), 2;
     example::Window window("march", o.width, o.height);
-    const Team team(o.rank);
+    const Team team("march", o.rank);
     set_up(o);
     Field field(o.seed, o.balls);
     Tetrahedra surface(o.cells);
@@ -139,7 +128,7 @@ int main(int argc, char** argv) {
         draw(corners);
         if (frame == o.frames && !o.picture.empty()) {
             team.barrier();  // all have drawn
-            if (team.first()) write_picture(o);
+            if (team.first()) example::write_picture(o.picture, o.width, o.height);
         }
         window.swap();  // a barrier, too: the frame ends when all have ended it
     }

@@ -6,9 +6,12 @@
 
 #include <vector>
 
-#include "examples/march/field.h"
+#include "examples/field.h"
 
 namespace march {
+
+using example::Field;
+using example::Vec3;
 
 struct Corner {
     Vec3 position, normal;

@@ -11,9 +11,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     PixelBlock into{partial->area, false, {}, {}};
     into.colors.resize(into.pixels());
     into.depths.resize(into.pixels(), 0xffffff00);
-    WALL_ASSERT(merge(*partial, GL_LEQUAL, into));
+    const bool depths = partial->depths.size() == partial->colors.size();
+    WALL_ASSERT(merge(*partial, GL_LEQUAL, into) == depths);
     into.top_row_first = true;
-    WALL_ASSERT(merge(*partial, GL_GEQUAL, into));
+    WALL_ASSERT(merge(*partial, GL_GEQUAL, into) == depths);
+    WALL_ASSERT(merge(*partial, GL_BLEND, into));
     for (auto& depth : into.depths) depth |= 1;
     const auto again = decode_partial(encode_partial(partial->key, into, PartialCodec::lz4));
     WALL_ASSERT(again && again->colors == into.colors && again->key == partial->key);

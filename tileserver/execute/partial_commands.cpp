@@ -28,7 +28,8 @@ std::vector<Receiver> receivers_of(std::span<const std::byte> bytes) {
     return out;
 }
 
-bool is_known(GLenum func) { return func == GL_LESS || func == GL_LEQUAL || func == GL_GREATER || func == GL_GEQUAL; }
+/// The depth that nothing lies behind, where nearer depths are those that pass.
+std::uint32_t farthest(GLenum by) { return by == GL_GREATER || by == GL_GEQUAL ? 0 : 1; }
 
 /// What the layer holds, in window pixels.
 geom::Rect window_area(const Layer& layer) {
@@ -44,10 +45,10 @@ SurfaceReplica* PartialCommands::known_surface(SurfaceId id) {
     return surface;
 }
 
-void PartialCommands::PartialBegin(SurfaceId id, std::uint32_t far, std::span<const std::byte> bytes) {
+void PartialCommands::PartialBegin(SurfaceId id, GLenum by, std::span<const std::byte> bytes) {
     SurfaceReplica* surface = known_surface(id);
     if (surface == nullptr) return;
-    if (far > 1) return execution_.refuse("a depth that is neither 0 nor 1");
+    if (!is_merge(by)) return execution_.refuse("a partial picture that nothing merges");
     if (bytes.size() % sizeof(Receiver) != 0 || bytes.size() / sizeof(Receiver) > wire::kTileSlots)
         return execution_.refuse("no whole number of receivers, or too many");
     const geom::Rect window{0, 0, static_cast<std::int32_t>(surface->where().window_width),
@@ -62,8 +63,9 @@ void PartialCommands::PartialBegin(SurfaceId id, std::uint32_t far, std::span<co
         wanted.push_back({NodeIndex(to.node), to.slot, area});
     }
     PartialLayers& partials = execution_.session.partials(id);
-    if (!partials.open(*surface, std::move(wanted))) return execution_.refuse("more pixels than a session may have");
-    for (const auto& partial : partials.all()) partial.layer->clear_to_depth(far);
+    if (!partials.open(*surface, by, std::move(wanted)))
+        return execution_.refuse("more pixels than a session may have");
+    for (const auto& partial : partials.all()) partial.layer->clear_to_depth(farthest(by));
     execution_.targets_known = false;
     execution_.node.driver.forget_target();
 }
@@ -72,8 +74,9 @@ void PartialCommands::PartialSend(SurfaceId id, std::uint32_t sequence, std::uin
     if (known_surface(id) == nullptr) return;
     const Timed timed(execution_.session.work.partial);
     execution_.node.driver.neutral_pixel_transfer();
+    const GLenum by = execution_.session.partials(id).merged_by();
     for (auto& partial : execution_.session.partials(id).all()) {
-        auto message = take_partial(partial, {id, sequence, rank(), NodeIndex(from), partial.slot});
+        auto message = take_partial(partial, {id, sequence, rank(), NodeIndex(from), partial.slot}, by);
         execution_.session.work.partial_bytes += message.size();
         if (partial.node != NodeIndex(from)) execution_.output.partial(partial.node, std::move(message));
         else if (execution_.node.partials != nullptr)
@@ -88,10 +91,12 @@ void PartialCommands::PartialSend(SurfaceId id, std::uint32_t sequence, std::uin
 }
 
 /// What was not drawn to need not be read.
-std::vector<std::byte> PartialCommands::take_partial(PartialLayers::One& partial, const PartialKey& key) const {
+std::vector<std::byte> PartialCommands::take_partial(PartialLayers::One& partial, const PartialKey& key,
+                                                     GLenum by) const {
     PixelBlock block{.area = partial.area, .top_row_first = false, .colors = {}, .depths = {}};
     if (std::exchange(partial.drawn, false)) partial.layer->read_block(block);
-    return encode_partial(key, block);
+    return encode_partial(key, block, PartialCodec::none,
+                          by == GL_BLEND ? PartialPlanes::colors : PartialPlanes::colors_and_depths);
 }
 
 void PartialCommands::PieceRange(std::uint32_t first, std::uint32_t behind) {
@@ -99,13 +104,12 @@ void PartialCommands::PieceRange(std::uint32_t first, std::uint32_t behind) {
     execution_.pieces = {first, behind};
 }
 
-void PartialCommands::PartialMerge(SurfaceId surface, std::uint32_t sequence, GLenum depth_func,
-                                   std::uint32_t slots_low, std::uint32_t slots_high,
-                                   std::span<const std::byte> nodes) {
+void PartialCommands::PartialMerge(SurfaceId surface, std::uint32_t sequence, GLenum by, std::uint32_t slots_low,
+                                   std::uint32_t slots_high, std::span<const std::byte> nodes) {
     if (known_surface(surface) == nullptr) return;
-    if (!is_known(depth_func) || nodes.size() % sizeof(std::uint32_t) != 0)
-        return execution_.refuse("a merge by no depth, or of no whole number of nodes");
-    Merge merge{surface, sequence, depth_func, {}, Clock::now()};
+    if (!is_merge(by) || nodes.size() % sizeof(std::uint32_t) != 0)
+        return execution_.refuse("a merge by nothing that is known, or of no whole number of nodes");
+    Merge merge{surface, sequence, by, {}, Clock::now()};
     for (auto slots = std::uint64_t{slots_high} << 32 | slots_low; slots != 0; slots &= slots - 1)
         for (std::size_t at = 0; at < nodes.size(); at += sizeof(std::uint32_t)) {
             std::uint32_t node = 0;
@@ -135,14 +139,14 @@ void PartialCommands::go_on() {
         while (next < merge.keys.size() && merge.keys[next].slot == merge.keys[first].slot) ++next;
         Layer* layer = surface->layer(merge.keys[first].slot);
         if (layer != nullptr && box != nullptr)
-            merge_into(*layer, std::span(merge.keys).subspan(first, next - first), merge.depth_func);
+            merge_into(*layer, std::span(merge.keys).subspan(first, next - first), merge.by);
     }
     if (box != nullptr) box->close(execution_.session.id(), merge.surface, rank(), merge.sequence);
     execution_.targets_known = false;
 }
 
 /// Those of one layer, in the order in which they were drawn.
-void PartialCommands::merge_into(Layer& layer, std::span<const PartialKey> keys, GLenum depth_func) {
+void PartialCommands::merge_into(Layer& layer, std::span<const PartialKey> keys, GLenum by) {
     Work& work = execution_.session.work;
     PixelBlock block;
     for (const PartialKey& key : keys) {
@@ -165,7 +169,7 @@ void PartialCommands::merge_into(Layer& layer, std::span<const PartialKey> keys,
             block.area = partial->area;
             layer.read_block(block);
         }
-        merge(*partial, depth_func, block);
+        if (!merge(*partial, by, block)) return execution_.refuse("a partial picture without what it is merged by");
     }
     if (!block.colors.empty()) layer.write_block(block);
 }

@@ -21,10 +21,10 @@ public:
     /// `execution` outlives it.
     explicit PartialCommands(Execution& execution) : execution_(execution) {}
 
-    void PartialBegin(SurfaceId surface, std::uint32_t far, std::span<const std::byte> receivers);
+    void PartialBegin(SurfaceId surface, GLenum by, std::span<const std::byte> receivers);
     void PartialSend(SurfaceId surface, std::uint32_t sequence, std::uint32_t from, RequestId request);
     void PieceRange(std::uint32_t first, std::uint32_t behind);
-    void PartialMerge(SurfaceId surface, std::uint32_t sequence, GLenum depth_func, std::uint32_t slots_low,
+    void PartialMerge(SurfaceId surface, std::uint32_t sequence, GLenum by, std::uint32_t slots_low,
                       std::uint32_t slots_high, std::span<const std::byte> nodes);
 
     /// A merge is not done.
@@ -39,15 +39,15 @@ private:
     struct Merge {
         SurfaceId surface;
         std::uint32_t sequence = 0;
-        GLenum depth_func = GL_LESS;
+        GLenum by = GL_LESS;
         std::vector<PartialKey> keys;  ///< by slot, in the order of drawing
         Clock::time_point begun;
     };
 
     SurfaceReplica* known_surface(SurfaceId id);
     Rank rank() const { return execution_.session.rank(); }
-    std::vector<std::byte> take_partial(PartialLayers::One& partial, const PartialKey& key) const;
-    void merge_into(Layer& layer, std::span<const PartialKey> keys, GLenum depth_func);
+    std::vector<std::byte> take_partial(PartialLayers::One& partial, const PartialKey& key, GLenum by) const;
+    void merge_into(Layer& layer, std::span<const PartialKey> keys, GLenum by);
 
     Execution& execution_;
     std::optional<Merge> merge_;

@@ -27,9 +27,10 @@ enum Field : std::size_t {
     top_row_first,
     codec,
     plain_bytes,
-    rank
+    rank,
+    planes
 };
-static_assert((rank + 1) * kWord == kPartialHeader);
+static_assert((planes + 1) * kWord == kPartialHeader);
 
 std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t index) {
     std::uint32_t word = 0;
@@ -58,7 +59,9 @@ std::vector<PixelRun> runs_of(const PixelBlock& block) {
 }
 
 /// The header of a message whose content has `plain` bytes, and room for so many coded ones.
-std::vector<std::byte> begin_message(const PartialKey& key, const geom::Rect& area, bool top_first, std::size_t plain) {
+std::vector<std::byte> begin_message(const PartialKey& key, const PixelBlock& block, PartialPlanes what,
+                                     std::size_t plain) {
+    const geom::Rect& area = block.area;
     std::vector<std::byte> out(kPartialHeader);
     set_word(out, surface, key.surface.value);
     set_word(out, sequence, key.sequence);
@@ -69,7 +72,8 @@ std::vector<std::byte> begin_message(const PartialKey& key, const geom::Rect& ar
     set_word(out, y, static_cast<std::uint32_t>(area.y));
     set_word(out, width, static_cast<std::uint32_t>(area.width));
     set_word(out, height, static_cast<std::uint32_t>(area.height));
-    set_word(out, top_row_first, top_first ? 1 : 0);
+    set_word(out, top_row_first, block.top_row_first ? 1 : 0);
+    set_word(out, planes, static_cast<std::uint32_t>(what));
     set_word(out, codec, static_cast<std::uint32_t>(PartialCodec::none));
     set_word(out, plain_bytes, static_cast<std::uint32_t>(plain));
     return out;
@@ -107,17 +111,20 @@ Result<std::vector<std::byte>> plain_of(std::span<const std::byte> message) {
 
 }  // namespace
 
-std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& block, PartialCodec by) {
+std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& block, PartialCodec by,
+                                      PartialPlanes what) {
     const std::vector<PixelRun> runs = runs_of(block);
     const std::size_t pixels = std::accumulate(runs.begin(), runs.end(), std::size_t{0},
                                                [](std::size_t n, const PixelRun& r) { return n + r.take; });
-    const std::size_t plain = 2 * kWord + runs.size() * sizeof(PixelRun) + 2 * pixels * kWord;
-    auto out = begin_message(key, block.area, block.top_row_first, plain);
+    const std::size_t plain =
+        2 * kWord + runs.size() * sizeof(PixelRun) + static_cast<std::size_t>(what) * pixels * kWord;
+    auto out = begin_message(key, block, what, plain);
     out.reserve(kPartialHeader + plain);
     const std::uint32_t counts[] = {static_cast<std::uint32_t>(runs.size()), static_cast<std::uint32_t>(pixels)};
     append(out, std::span<const std::uint32_t>(counts));
     append(out, std::span<const PixelRun>(runs));
     for (const auto* values : {&block.colors, &block.depths}) {
+        if (values == &block.depths && what == PartialPlanes::colors) break;
         std::size_t at = 0;
         for (const PixelRun& run : runs) {
             at += run.skip;
@@ -162,11 +169,13 @@ Result<Partial> decode_partial(std::span<const std::byte> message) {
         std::uint64_t{columns} * rows > kMaxPartialPixels || word_at(message, x) > wire::kMaxSurfaceExtent ||
         word_at(message, y) > wire::kMaxSurfaceExtent)
         return tl::unexpected(wrong("of an area that none can have"));
+    const std::uint64_t each = word_at(message, planes);
+    if (each != 1 && each != 2) return tl::unexpected(wrong("of neither one plane nor two"));
     const auto plain = plain_of(message);
     if (!plain) return tl::unexpected(plain.error());
     if (plain->size() < 2 * kWord) return tl::unexpected(wrong("it has no counts"));
     const std::uint64_t runs = word_at(*plain, 0), pixels = word_at(*plain, 1), area = std::uint64_t{columns} * rows;
-    if (runs > area || pixels > area || plain->size() != 2 * kWord + runs * sizeof(PixelRun) + 2 * pixels * kWord)
+    if (runs > area || pixels > area || plain->size() != 2 * kWord + runs * sizeof(PixelRun) + each * pixels * kWord)
         return tl::unexpected(wrong("its counts do not fit its length"));
     Partial out{*key,
                 {static_cast<std::int32_t>(word_at(message, x)), static_cast<std::int32_t>(word_at(message, y)),
@@ -174,7 +183,7 @@ Result<Partial> decode_partial(std::span<const std::byte> message) {
                 word_at(message, top_row_first) != 0,
                 std::vector<PixelRun>(runs),
                 std::vector<std::uint32_t>(pixels),
-                std::vector<std::uint32_t>(pixels)};
+                std::vector<std::uint32_t>(each == 2 ? pixels : 0)};
     const std::byte* at = plain->data() + 2 * kWord;
     const auto take = [&at](auto& values) {
         const std::size_t bytes = values.size() * sizeof values[0];
@@ -196,20 +205,9 @@ Result<Partial> decode_partial(std::span<const std::byte> message) {
 
 namespace {
 
-/// `nearer(theirs, ours)`, of 24 bits each.
-template <class Nearer>
-void merge_run(std::size_t count, const std::uint32_t* colors, const std::uint32_t* depths, std::uint32_t* our_colors,
-               std::uint32_t* our_depths, Nearer&& nearer) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t theirs = depths[i] >> 8, ours = our_depths[i] >> 8;
-        const bool wins = nearer(theirs, ours);
-        our_colors[i] = wins ? colors[i] : our_colors[i];
-        our_depths[i] = wins ? (depths[i] & 0xffffff00) | (our_depths[i] & 0xff) : our_depths[i];
-    }
-}
-
-template <class Nearer>
-void merge_all(const Partial& partial, PixelBlock& into, const Nearer& nearer) {
+/// Those of a run of pixels, one after the other: `at(theirs, ours, count)`, by their places.
+template <class At>
+void for_each_run(const Partial& partial, const PixelBlock& into, At&& each) {
     const auto columns = static_cast<std::size_t>(partial.area.width),
                rows = static_cast<std::size_t>(partial.area.height);
     const bool upside_down = partial.top_row_first != into.top_row_first;
@@ -219,9 +217,7 @@ void merge_all(const Partial& partial, PixelBlock& into, const Nearer& nearer) {
         for (std::size_t left = run.take; left != 0;) {
             const std::size_t row = at / columns, column = at % columns;
             const std::size_t count = upside_down ? std::min(left, columns - column) : left;
-            const std::size_t to = upside_down ? (rows - 1 - row) * columns + column : at;
-            merge_run(count, &partial.colors[pixel], &partial.depths[pixel], &into.colors[to], &into.depths[to],
-                      nearer);
+            each(pixel, upside_down ? (rows - 1 - row) * columns + column : at, count);
             at += count;
             pixel += count;
             left -= count;
@@ -229,15 +225,56 @@ void merge_all(const Partial& partial, PixelBlock& into, const Nearer& nearer) {
     }
 }
 
+/// `nearer(theirs, ours)`, of 24 bits each.
+template <class Nearer>
+void merge_by_depth(const Partial& partial, PixelBlock& into, const Nearer& nearer) {
+    for_each_run(partial, into, [&](std::size_t pixel, std::size_t to, std::size_t count) {
+        const std::uint32_t* const colors = &partial.colors[pixel];
+        const std::uint32_t* const depths = &partial.depths[pixel];
+        std::uint32_t* const our_colors = &into.colors[to];
+        std::uint32_t* const our_depths = &into.depths[to];
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool wins = nearer(depths[i] >> 8, our_depths[i] >> 8);
+            our_colors[i] = wins ? colors[i] : our_colors[i];
+            our_depths[i] = wins ? (depths[i] & 0xffffff00) | (our_depths[i] & 0xff) : our_depths[i];
+        }
+    });
+}
+
+/// Four bytes each; `value` / 255, rounded to the nearest, for products of two bytes.
+std::uint32_t over(std::uint32_t theirs, std::uint32_t ours) {
+    const std::uint32_t through = 255 - (theirs >> 24);
+    std::uint32_t out = 0;
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+        const std::uint32_t product = (ours >> shift & 0xff) * through + 128;
+        const std::uint32_t left = (product + (product >> 8)) >> 8;
+        out |= std::min<std::uint32_t>((theirs >> shift & 0xff) + left, 255) << shift;
+    }
+    return out;
+}
+
+void merge_over(const Partial& partial, PixelBlock& into) {
+    for_each_run(partial, into, [&](std::size_t pixel, std::size_t to, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i)
+            into.colors[to + i] = over(partial.colors[pixel + i], into.colors[to + i]);
+    });
+}
+
 }  // namespace
 
-bool merge(const Partial& partial, GLenum depth_func, PixelBlock& into) {
+bool is_merge(GLenum by) {
+    return by == GL_LESS || by == GL_LEQUAL || by == GL_GREATER || by == GL_GEQUAL || by == GL_BLEND;
+}
+
+bool merge(const Partial& partial, GLenum by, PixelBlock& into) {
     if (partial.area != into.area) return false;
-    switch (depth_func) {
-        case GL_LESS: merge_all(partial, into, std::less<>()); return true;
-        case GL_LEQUAL: merge_all(partial, into, std::less_equal<>()); return true;
-        case GL_GREATER: merge_all(partial, into, std::greater<>()); return true;
-        case GL_GEQUAL: merge_all(partial, into, std::greater_equal<>()); return true;
+    if (by == GL_BLEND) return merge_over(partial, into), true;
+    if (partial.depths.size() != partial.colors.size()) return false;
+    switch (by) {
+        case GL_LESS: merge_by_depth(partial, into, std::less<>()); return true;
+        case GL_LEQUAL: merge_by_depth(partial, into, std::less_equal<>()); return true;
+        case GL_GREATER: merge_by_depth(partial, into, std::greater<>()); return true;
+        case GL_GEQUAL: merge_by_depth(partial, into, std::greater_equal<>()); return true;
         default: return false;
     }
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What one node sends another one of a sort-last session: the pixels that it has drawn of a window in the area of one
-// layer, with their depths (A3.3: colour and depth of each renderer meet where they are composed). What was not drawn
-// is not sent: the pixels come as runs.
+// layer, with their depths (A3.3: colour and depth of each renderer meet where they are composed); without where they
+// blend. What was not drawn is not sent: the pixels come as runs.
 //
 //   partial := surface:u32 sequence:u32 from:u32 slot:u32 x:i32 y:i32 width:u32 height:u32 top_row_first:u32
-//              codec:u32 plain_bytes:u32 rank:u32 coded
+//              codec:u32 plain_bytes:u32 rank:u32 planes:u32 coded
 //   plain   := runs:u32 pixels:u32 (skip:u32 take:u32)[runs] color:u32[pixels] depth:u32[pixels]     (little endian)
+//   planes  := 1 (no depths) | 2
 //
 // A color is RGBA, red in its low byte; a depth has 24 bits in its high ones, and in its low ones what the receiver
 // does not look at. A codec is named by four letters, as AnyGL names them in its packets (A5.3). Pure; any thread.
@@ -58,23 +59,30 @@ struct Partial {
     geom::Rect area;
     bool top_row_first = false;
     std::vector<PixelRun> runs;
-    std::vector<std::uint32_t> colors, depths;  ///< of the pixels that runs take
+    std::vector<std::uint32_t> colors, depths;  ///< of the pixels that runs take; there may be no depths
 };
 
-inline constexpr std::size_t kPartialHeader = 48;             ///< bytes
+inline constexpr std::size_t kPartialHeader = 52;             ///< bytes
 inline constexpr std::uint32_t kMaxPartialPixels = 1u << 24;  ///< of a layer that partial pictures are sent for
+
+enum class PartialPlanes : std::uint32_t { colors = 1, colors_and_depths };
 
 /// The pixels whose stencil value is not 0; of a block without values none.
 std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& block,
-                                      PartialCodec codec = PartialCodec::none);
+                                      PartialCodec codec = PartialCodec::none,
+                                      PartialPlanes planes = PartialPlanes::colors_and_depths);
 /// The same partial picture by another codec; a message that encode_partial() has made.
 std::vector<std::byte> recode_partial(std::span<const std::byte> message, PartialCodec codec);
 /// Of foreign bytes: only what they say that they are.
 Result<PartialKey> key_of_partial(std::span<const std::byte> message);
 Result<Partial> decode_partial(std::span<const std::byte> message);
 
-/// Those pixels whose depth passes the test take the place of what is there, as if they were drawn now. The stencil
-/// values stay. `depth_func`: GL_LESS, GL_LEQUAL, GL_GREATER or GL_GEQUAL. False: they are not of the same area.
-bool merge(const Partial& partial, GLenum depth_func, PixelBlock& into);
+/// Whether merge() knows it.
+bool is_merge(GLenum by);
+/// What was drawn for others, as if it were drawn now. `by`: GL_LESS, GL_LEQUAL, GL_GREATER or GL_GEQUAL, and those
+/// pixels whose depth passes the test take the place of what is there; stencil values stay. Or GL_BLEND, and the
+/// colours lie over what is there ("over" by Porter and Duff 1984, alpha multiplied into them); depths stay as well.
+/// False: they are not of the same area, or have no depths to be tested.
+bool merge(const Partial& partial, GLenum by, PixelBlock& into);
 
 }  // namespace wall::tileserver

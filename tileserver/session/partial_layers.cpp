@@ -8,7 +8,8 @@
 
 namespace wall::tileserver {
 
-bool PartialLayers::open(SurfaceReplica& surface, std::vector<One> wanted) {
+bool PartialLayers::open(SurfaceReplica& surface, GLenum by, std::vector<One> wanted) {
+    by_ = by;
     opened_ = std::chrono::steady_clock::now();
     bool affordable = true;
     for (One& one : wanted) {

@@ -27,8 +27,10 @@ public:
     };
 
     /// Those of the window as it lies now; such as are there already keep their memory. False: over the budget.
-    bool open(SurfaceReplica& surface, std::vector<One> wanted);
+    bool open(SurfaceReplica& surface, GLenum by, std::vector<One> wanted);
     std::vector<One>& all() { return all_; }
+    /// How they will be, as PartialMerge says it.
+    GLenum merged_by() const { return by_; }
     /// When that was last.
     std::chrono::steady_clock::time_point opened() const { return opened_; }
     /// To draw to. Null: there is none.
@@ -36,6 +38,7 @@ public:
 
 private:
     std::vector<One> all_;
+    GLenum by_ = GL_LESS;
     std::chrono::steady_clock::time_point opened_{};
 };
 

@@ -110,7 +110,7 @@ LayerGeometry SurfaceReplica::geometry_of_part(const geom::Rect& part) const {
 }
 
 std::unique_ptr<Layer> SurfaceReplica::make_partial(const LayerGeometry& geometry) {
-    const LayerFormat format{.double_buffered = false, .alpha = format_.layer.alpha, .srgb = format_.layer.srgb};
+    const LayerFormat format{.double_buffered = false, .alpha = true, .srgb = format_.layer.srgb};
     if (pixels_taken(geometry, format) > budget_.left) return nullptr;
     return std::make_unique<Layer>(gl_, flip_y_, geometry, format, budget_);
 }

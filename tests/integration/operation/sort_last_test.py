@@ -18,6 +18,9 @@ from xserver import XServer  # noqa: E402
 
 QUIET = {"LP_NUM_THREADS": "0"}
 SIZE = 320, 240  # of a tile
+BLENDED = (build_folder() / "examples" / "volume", "--cells", "32", "--planes", "60", "--size", "600x400",
+           "--step", "75")  # a slab that is behind the others in one frame is before them in the next
+ROUNDING = 6  # of a colour of 255: each process' part is rounded by itself, in each of its planes
 MARCH = (build_folder() / "examples" / "march", "--cells", "24", "--size", "600x400")
 FRAME = 4
 
@@ -59,10 +62,10 @@ class ProgramsThatAreDealt(unittest.TestCase):
     def partials(self, wall: PlannedWall, session: int) -> dict:
         return next(s for s in wall.sessions() if s["id"] == session)["partials"]
 
-    def without(self, frame: int) -> np.ndarray:
-        """What the wall shows of march, drawn by the nodes that show it."""
+    def without(self, frame: int, program: tuple = MARCH) -> np.ndarray:
+        """What the wall shows of a program, drawn by the nodes that show it."""
         with PlannedWall(plan_of(0), environment=QUIET, swap_timeout_ms=5000) as plain:
-            app, session = self.start(plain, *MARCH, sort_last=False)
+            app, session = self.start(plain, *program, sort_last=False)
             shown = self.picture(plain, session, frame)
             self.assertEqual(self.partials(plain, session)["merged"], 0)
         return shown
@@ -106,6 +109,32 @@ class ProgramsThatAreDealt(unittest.TestCase):
                 self.assertEqual(int((given != expected).any(axis=2).sum()), 0)
                 wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
                 self.assertEqual(self.partials(wall, session)["missed"], 0)
+
+
+    def blended(self, wall: PlannedWall, ranks: int, *more: object) -> int:
+        """The session of so many processes, each with a slab of the volume."""
+        line = wall.wallrun(*BLENDED, *more, rect=(13, 9, 600, 400), hold=True, sort_last=True, parallel=ranks)
+        wall.run_line(line, env=self.x.environment(), stdout=subprocess.DEVNULL)
+        return wall.wait_session()
+
+    def test_what_they_blend_lies_one_over_the_other_in_their_order(self) -> None:
+        first, second = (self.without(frame, BLENDED).astype(int) for frame in (1, 2))
+        self.assertGreater((first != first[0, 0]).any(axis=2).mean(), 0.05, "there is something to be seen")
+        all_do_both = {f"node{i}": {f"t{i % 2}{i // 2}": (i % 2 * SIZE[0], i // 2 * SIZE[1], *SIZE)} for i in range(4)}
+        walls = {"nodes that draw": (2, plan_of(2), keys_of(2)), "more processes than nodes": (4, plan_of(3), keys_of(3)),
+                 "nodes that do both": (4, all_do_both, {})}
+        for name, (ranks, plan, keys) in walls.items():
+            with self.subTest(name), PlannedWall(plan, node_keys=keys, environment=QUIET,
+                                                 swap_timeout_ms=5000) as wall:
+                session = self.blended(wall, ranks)
+                for expected in (first, second):
+                    given = self.picture(wall, session, 1).astype(int)
+                    self.assertLessEqual(int(abs(given - expected).max()), ROUNDING)
+                wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
+                self.assertEqual(self.partials(wall, session)["missed"], 0)
+        with PlannedWall(plan_of(2), node_keys=keys_of(2), environment=QUIET, swap_timeout_ms=5000) as wall:
+            wrong = self.picture(wall, self.blended(wall, 2, "--order", "front"), 1).astype(int)
+            self.assertGreater(int(abs(wrong - first).max()), 5 * ROUNDING, "the order is to be seen")
 
 
 if __name__ == "__main__":

@@ -21,12 +21,12 @@ constexpr SurfaceId kSurface{1};
 constexpr std::uint64_t kPartial = std::uint64_t{1} << wire::kPartialSlot | 3;
 constexpr std::uint32_t kRenderers[] = {4, 5};
 
-/// A triangle that leans through the picture.
-void pack_triangle(wire::PackBuffer& b, int which) {
+/// A triangle that leans through the picture. Its colour is multiplied by its alpha.
+void pack_triangle(wire::PackBuffer& b, int which, float alpha) {
     constexpr std::array<std::array<float, 3>, 4> kColors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}}};
     const auto& [red, green, blue] = kColors[static_cast<std::size_t>(which)];
     const float turn = 0.4f * static_cast<float>(which);
-    pack::Color3f(b, red, green, blue);
+    pack::Color4f(b, alpha * red, alpha * green, alpha * blue, alpha);
     pack::Begin(b, GL_TRIANGLES);
     pack::Vertex3f(b, -0.9f + turn, -0.8f, -0.9f);
     pack::Vertex3f(b, 0.9f, -0.7f + turn, 0.9f - turn);
@@ -63,21 +63,26 @@ protected:
         });
         session.expect_run(batch);
     }
-    static void draw(TestSession& session, std::uint64_t slots, int which, bool marks) {
+    static void draw(TestSession& session, std::uint64_t slots, int which, bool marks, bool blends = false) {
         Batch batch;
+        if (blends)
+            batch.set<el::depth_test>(0).set<el::blend_enabled>(1).set<el::blend_func>(
+                {GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA});
         if (marks)
             for (unsigned face = 0; face < 2; ++face)
                 batch.set<el::stencil_func>({GL_ALWAYS, 1, 0xff}, face)
                     .set<el::stencil_op>({GL_KEEP, GL_KEEP, GL_REPLACE}, face);
-        batch.set<el::stencil_test>(marks ? 1 : 0).block(slots, [&](auto& b) { pack_triangle(b, which); });
+        batch.set<el::stencil_test>(marks ? 1 : 0).block(slots, [&](auto& b) {
+            pack_triangle(b, which, blends ? 0.6f : 1);
+        });
         session.expect_run(batch);
     }
     /// Draws two of the triangles for others, and sends them.
-    void deal(TestSession& renderer, std::uint32_t from, int first, std::uint32_t sequence = 1) {
+    void deal(TestSession& renderer, std::uint32_t from, int first, std::uint32_t sequence = 1, GLenum by = GL_LESS) {
         Batch begin;
-        pack::PartialBegin(begin.buffer(), kSurface, 1, std::as_bytes(std::span(kReceivers)));
+        pack::PartialBegin(begin.buffer(), kSurface, by, std::as_bytes(std::span(kReceivers)));
         renderer.expect_run(begin);
-        for (const int which : {first, first + 1}) draw(renderer, kPartial, which, true);
+        for (const int which : {first, first + 1}) draw(renderer, kPartial, which, true, by == GL_BLEND);
         Batch send;
         pack::PartialSend(send.buffer(), kSurface, sequence, from, RequestId(5));
         renderer.expect_run(send);
@@ -100,6 +105,13 @@ protected:
     static std::size_t differ(TestSession& a, TestSession& b) {
         return count_different(a.read(0, kLeft), b.read(0, kLeft)) +
                count_different(a.read(1, kRight), b.read(1, kRight));
+    }
+    /// How far apart bytes of them are at most.
+    static int apart(const std::vector<Pixels>& a, const std::vector<Pixels>& b) {
+        int most = 0;
+        for (std::size_t tile = 0; tile < a.size(); ++tile)
+            for (std::size_t i = 0; i < a[tile].size(); ++i) most = std::max(most, std::abs(a[tile][i] - b[tile][i]));
+        return most;
     }
     /// Both tiles' back buffers.
     static std::vector<Pixels> read(TestSession& session) { return {session.read(0, kLeft), session.read(1, kRight)}; }
@@ -128,6 +140,28 @@ TEST_F(PartialPicturesOfNodes, AreThePictureThatOneWouldHaveDrawn) {
     // What is drawn behind it meets its depths.
     for (TestSession* session : {&shows, &alone}) draw(*session, 3, 1, false);
     EXPECT_EQ(differ(shows, alone), 0u);
+}
+
+TEST_F(PartialPicturesOfNodes, ThatBlendLieOneOverTheOther) {
+    TestSession shows(*node_.node, SessionId(1)), alone(*node_.node, SessionId(2)), first(*node_.node, SessionId(3)),
+        second(*node_.node, SessionId(4));
+    for (TestSession* session : {&shows, &alone, &first, &second}) open(*session, wire::kTilesOnly);
+    for (int which = 0; which < 4; ++which) {
+        if (which == 0) clear(alone);
+        draw(alone, 3, which, false, true);
+    }
+    const auto merged = [&](std::uint32_t sequence, const std::array<std::uint32_t, 2>& order) {
+        clear(shows);
+        deal(first, kRenderers[0], 0, sequence, GL_BLEND);
+        deal(second, kRenderers[1], 2, sequence, GL_BLEND);
+        deliver(first);
+        deliver(second);
+        shows.expect_run(merging(order, sequence, GL_BLEND));
+        return read(shows);
+    };
+    EXPECT_LE(apart(merged(1, {4, 5}), read(alone)), 2) << "each part is rounded by itself";
+    EXPECT_GT(apart(merged(2, {5, 4}), read(alone)), 50) << "the order matters";
+    EXPECT_EQ(shows.session.work.partials_missed, 0u);
 }
 
 TEST_F(PartialPicturesOfNodes, GoOverWhatTheTilesHold) {
@@ -198,14 +232,15 @@ TEST_F(PartialPicturesOfNodes, OfWhatIsNotThereEndTheStream) {
         return done ? std::string() : done.error().message;
     };
     constexpr Receiver kOutside[] = {{9, 0, 1, 0, kWidth, kHeight}}, kNoSlot[] = {{9, 64, 0, 0, 1, 1}};
-    EXPECT_THAT(refused([](auto& b) { pack::PartialBegin(b, SurfaceId(7), 1, {}); }), HasSubstr("does not exist"));
-    EXPECT_THAT(refused([](auto& b) { pack::PartialBegin(b, kSurface, 2, {}); }), HasSubstr("depth"));
-    EXPECT_THAT(refused([&](auto& b) { pack::PartialBegin(b, kSurface, 1, std::as_bytes(std::span(kOutside))); }),
+    EXPECT_THAT(refused([](auto& b) { pack::PartialBegin(b, SurfaceId(7), GL_LESS, {}); }),
+                HasSubstr("does not exist"));
+    EXPECT_THAT(refused([](auto& b) { pack::PartialBegin(b, kSurface, GL_EQUAL, {}); }), HasSubstr("nothing merges"));
+    EXPECT_THAT(refused([&](auto& b) { pack::PartialBegin(b, kSurface, GL_LESS, std::as_bytes(std::span(kOutside))); }),
                 HasSubstr("not in the window"));
-    EXPECT_THAT(refused([&](auto& b) { pack::PartialBegin(b, kSurface, 1, std::as_bytes(std::span(kNoSlot))); }),
+    EXPECT_THAT(refused([&](auto& b) { pack::PartialBegin(b, kSurface, GL_LESS, std::as_bytes(std::span(kNoSlot))); }),
                 HasSubstr("not in the window"));
     EXPECT_THAT(refused([](auto& b) { pack::PartialMerge(b, kSurface, 1, GL_ALWAYS, 1, 0, {}); }),
-                HasSubstr("by no depth"));
+                HasSubstr("by nothing"));
 }
 
 }  // namespace

@@ -104,7 +104,8 @@ protected:
     OpenSurfaces open;
     NodeUpdater updater{nodes};
     HiddenParts hidden{nodes, open};
-    Dealer dealer{nodes, updater, true};
+    std::optional<Parallel> group;
+    Dealer dealer{nodes, updater, true, group};
     Sight sight;
     Followers followers{nodes, updater, hidden, dealer, sight};
     ClientSurface surface{SurfaceId(1), {}};
@@ -208,6 +209,43 @@ TEST_F(ADealer, DoesNotDealWindowsThatCannotBeComposed) {
     surface.whole = false;
     Dealer unwanted(nodes, updater, false);
     EXPECT_THAT(unwanted.deal(source(), std::nullopt, 5), IsEmpty());
+}
+
+/// The second process of two: the second node draws what it is dealt.
+struct ADealerOfAProcess : ADealer {
+    ADealerOfAProcess() {
+        group = Parallel{"", 1, 2};
+        glstate::el::depth_test::ref(state) = 0;
+        glstate::el::blend_enabled::ref(state) = 1;
+        glstate::el::blend_func::ref(state) = {GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA};
+        open[surface.id] = &surface;
+    }
+};
+
+TEST_F(ADealerOfAProcess, DrawsBeforeItsTurnWhatLiesOverTheOthers) {
+    dealer.take_semaphore(open, kContext, 3);
+    draw(std::nullopt, 5);
+    swap();
+    const Packed draws = packed(kDraws);
+    EXPECT_EQ(draws.ops, behind_target({Op::PartialBegin, Op::Block, Op::Begin, Op::PartialSend, Op::SemaphoreP}));
+    EXPECT_THAT(draws.blocks, ElementsAre(kPartialBit | kLeft | kRight));
+    EXPECT_EQ(packed(kShows).ops.front(), Op::SemaphoreP) << "what is seen is held at once";
+}
+
+TEST_F(ADealerOfAProcess, WaitsForItsTurnBeforeAnythingElse) {
+    dealer.take_semaphore(open, kContext, 3);
+    dealer.take_semaphore(open, kContext, 4);
+    EXPECT_THAT(packed(kDraws).ops, IsEmpty());
+    clear();
+    EXPECT_EQ(packed(kDraws).ops, (std::vector{Op::SemaphoreP, Op::SemaphoreP}));
+    swap();
+    EXPECT_THAT(packed(kDraws).ops, IsEmpty()) << "once";
+}
+
+TEST_F(ADealerOfAProcess, IsNotTheOnlyOneThatBlends) {
+    group.reset();
+    draw(std::nullopt, 5);
+    EXPECT_THAT(packed(kShows).blocks, ElementsAre(kLeft | kRight)) << "one program's blending is not dealt";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cstring>
 #include <random>
 
@@ -117,6 +118,52 @@ TEST(PartialPictures, MergedInOrderAreWhatOneNodeWouldHaveDrawn) {
         }
 }
 
+TEST(APartialPicture, ThatBlendsHasNoDepths) {
+    const PixelBlock block = block_of(3, 1, {0x80402010, 2, 0xff030303}, {drawn(7), kUndrawn, drawn(9)});
+    const auto message = encode_partial(kKey, block, PartialCodec::none, PartialPlanes::colors);
+    EXPECT_EQ(encode_partial(kKey, block).size() - message.size(), 2 * sizeof(std::uint32_t));
+    const Partial partial = decoded(message);
+    EXPECT_THAT(partial.colors, ElementsAre(0x80402010, 0xff030303));
+    EXPECT_THAT(partial.depths, ElementsAre());
+    PixelBlock into = block_of(3, 1, {0xff6496c8, 0xff6496c8, 0xff6496c8}, {5, 6, 7});
+    EXPECT_FALSE(merge(partial, GL_LESS, into)) << "it has none to be tested";
+    ASSERT_TRUE(merge(partial, GL_BLEND, into));
+    // 0x80 of 255 covers; what is left of c is c * 127 / 255.
+    EXPECT_THAT(into.colors,
+                ElementsAre(0xff000000u | (0x40 + 50) << 16 | (0x20 + 75) << 8 | (0x10 + 100), 0xff6496c8, 0xff030303));
+    EXPECT_THAT(into.depths, ElementsAre(5, 6, 7));
+}
+
+/// One after the other, without rounding.
+std::array<double, 4> over(const std::array<double, 4>& theirs, const std::array<double, 4>& ours) {
+    std::array<double, 4> out{};
+    for (std::size_t i = 0; i < 4; ++i) out[i] = theirs[i] + (1 - theirs[3]) * ours[i];
+    return out;
+}
+
+std::array<double, 4> channels(std::uint32_t color) {
+    return {(color & 0xff) / 255.0, (color >> 8 & 0xff) / 255.0, (color >> 16 & 0xff) / 255.0, (color >> 24) / 255.0};
+}
+
+TEST(PartialPictures, BlendedLieOneOverTheOther) {
+    std::mt19937 random(3);
+    for (int round = 0; round < 2000; ++round) {
+        auto color = static_cast<std::uint32_t>(0xff000000 | random() % 0x1000000);
+        auto exact = channels(color);
+        PixelBlock into = block_of(1, 1, {color}, {kUndrawn});
+        for (int part = 0; part < 4; ++part) {
+            const auto alpha = static_cast<std::uint32_t>(random() % 256);
+            const auto at_most = [&] { return static_cast<std::uint32_t>(random() % (alpha + 1)); };  // alpha is multiplied into it
+            color = alpha << 24 | at_most() << 16 | at_most() << 8 | at_most();
+            exact = over(channels(color), exact);
+            const PixelBlock block = block_of(1, 1, {color}, {drawn(1)});
+            ASSERT_TRUE(merge(decoded(encode_partial(kKey, block)), GL_BLEND, into));
+        }
+        const auto merged = channels(into.colors[0]);
+        for (std::size_t i = 0; i < 4; ++i) ASSERT_NEAR(merged[i], exact[i], 4 * 0.51 / 255) << round << " " << i;
+    }
+}
+
 TEST(APartialPicture, FitsRowsInTheOtherOrder) {
     const PixelBlock theirs =
         block_of(2, 3, {1, 2, 3, 4, 5, 6}, {drawn(0), drawn(0), kUndrawn, drawn(0), drawn(0), drawn(0)});
@@ -157,9 +204,9 @@ TEST(APartialPicture, ThatIsDamagedIsRefused) {
     EXPECT_THAT(error_of(with(9, 0x20707a67)), HasSubstr("codec is not known"));
     EXPECT_THAT(error_of(with(9, static_cast<std::uint32_t>(PartialCodec::lz4))), HasSubstr("damaged"));
     EXPECT_THAT(error_of(with(10, 0xffffffff)), HasSubstr("larger"));
-    EXPECT_THAT(error_of(with(12, 7)), HasSubstr("counts"));
-    EXPECT_THAT(error_of(with(14, 1)), HasSubstr("lead out")) << "a pixel is skipped that is not there";
-    EXPECT_THAT(error_of(with(15, 1)), HasSubstr("not those"));
+    EXPECT_THAT(error_of(with(13, 7)), HasSubstr("counts"));
+    EXPECT_THAT(error_of(with(15, 1)), HasSubstr("lead out")) << "a pixel is skipped that is not there";
+    EXPECT_THAT(error_of(with(16, 1)), HasSubstr("not those"));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace march {
+namespace example {
 
 struct Vec3 {
     float x = 0, y = 0, z = 0;
@@ -30,4 +30,4 @@ private:
     std::vector<Ball> balls_;
 };
 
-}  // namespace march
+}  // namespace example

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "examples/march/field.h"
+#include "examples/field.h"
 
 #include <cmath>
 #include <random>
 
-namespace march {
+namespace example {
 namespace {
 
 constexpr float kSwing = 0.5f;    // how far a ball gets from the middle
@@ -63,4 +63,4 @@ Vec3 Field::normal(const Vec3& at) const {
     return length > 0 ? Vec3{sum.x / length, sum.y / length, sum.z / length} : Vec3{0, 0, 1};
 }
 
-}  // namespace march
+}  // namespace example
