@@ -20,7 +20,7 @@ QUIET = {"LP_NUM_THREADS": "0"}
 SIZE = 320, 240  # of a tile
 BLENDED = (build_folder() / "examples" / "volume", "--cells", "32", "--planes", "60", "--size", "600x400",
            "--step", "75")  # a slab that is behind the others in one frame is before them in the next
-ROUNDING = 6  # of a colour of 255: each process' part is rounded by itself, in each of its planes
+ROUNDING = 8  # of a colour of 255: each process' part is rounded by itself, in each of its planes (6 is measured)
 MARCH = (build_folder() / "examples" / "march", "--cells", "24", "--size", "600x400")
 FRAME = 4
 
