@@ -121,7 +121,8 @@ class ProgramsThatAreDealt(unittest.TestCase):
         first, second = (self.without(frame, BLENDED).astype(int) for frame in (1, 2))
         self.assertGreater((first != first[0, 0]).any(axis=2).mean(), 0.05, "there is something to be seen")
         all_do_both = {f"node{i}": {f"t{i % 2}{i // 2}": (i % 2 * SIZE[0], i // 2 * SIZE[1], *SIZE)} for i in range(4)}
-        walls = {"nodes that draw": (2, plan_of(2), keys_of(2)), "more processes than nodes": (4, plan_of(3), keys_of(3)),
+        walls = {"nodes that draw": (2, plan_of(2), keys_of(2)),
+                 "more processes than nodes": (4, plan_of(3), keys_of(3)),
                  "nodes that do both": (4, all_do_both, {})}
         for name, (ranks, plan, keys) in walls.items():
             with self.subTest(name), PlannedWall(plan, node_keys=keys, environment=QUIET,

@@ -153,7 +153,9 @@ TEST(PartialPictures, BlendedLieOneOverTheOther) {
         PixelBlock into = block_of(1, 1, {color}, {kUndrawn});
         for (int part = 0; part < 4; ++part) {
             const auto alpha = static_cast<std::uint32_t>(random() % 256);
-            const auto at_most = [&] { return static_cast<std::uint32_t>(random() % (alpha + 1)); };  // alpha is multiplied into it
+            const auto at_most = [&] {
+                return static_cast<std::uint32_t>(random() % (alpha + 1));
+            };  // alpha is multiplied into it
             color = alpha << 24 | at_most() << 16 | at_most() << 8 | at_most();
             exact = over(channels(color), exact);
             const PixelBlock block = block_of(1, 1, {color}, {drawn(1)});
