@@ -19,12 +19,19 @@ bool clears_all(const Context& c, GLbitfield mask) {
            c.state.window.draw_buffer == GL_BACK && glstate::writes_all_channels(c.state);
 }
 
+/// Nor of the depths that it was drawn by.
+bool leaves_nothing(const Context& c, GLbitfield mask) {
+    const bool depth = c.draw_target().format().depth_bits == 0 ||
+                       ((mask & GL_DEPTH_BUFFER_BIT) != 0 && c.state.depth_stencil.depth_mask);
+    return depth && clears_all(c, mask);
+}
+
 /// Clears on every node that it goes to: `pack(buffer)` is the command, `mask` what glClear would call the buffers.
 template <class Pack>
 void clear(Context& c, GLbitfield mask, Pack&& pack) {
     if (c.state.local.render_mode != GL_RENDER || c.draws_nothing) return;
     c.flush_block();
-    c.session().hidden_parts([&](HiddenParts& parts) { parts.before_clear(c.draw_source(), mask); });
+    c.session().before_clear(c.draw_source(), mask, c.draw_target() && leaves_nothing(c, mask));
     c.draw(scissor_box(c.state), needs_of_clear(), pack);
     if (c.draw_target() && clears_all(c, mask)) c.draw_target().note_cleared();
 }

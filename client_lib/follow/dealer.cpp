@@ -78,7 +78,7 @@ std::vector<TargetLayer> Dealer::receivers_of(const ClientSurface& surface) cons
 std::span<const Dealer::Dealt> Dealer::deal(const DrawSource& source, const Reach& reach, double elements,
                                             std::uint32_t pieces) {
     dealt_.clear();
-    ClientSurface* const surface = source.draw.dealt_surface();
+    ClientSurface* const surface = source.draw.pictured_surface();
     if (surface == nullptr || elements <= 0) return {};
     Deal& deal = surface->deal;
     if (!deal.chosen) choose(*surface);
@@ -126,7 +126,7 @@ void Dealer::cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t 
 }
 
 wire::PackBuffer& Dealer::prepare(Node& node, const DrawSource& source, const Needs& needs) {
-    ClientSurface& surface = *source.draw.dealt_surface();
+    ClientSurface& surface = *source.draw.pictured_surface();
     Deal& deal = surface.deal;
     const MarkingState marking(source.state, deal.by, deal.marking);
     wire::PackBuffer& buffer = updater_.prepare(node, source, needs);
@@ -139,7 +139,7 @@ wire::PackBuffer& Dealer::prepare(Node& node, const DrawSource& source, const Ne
 }
 
 void Dealer::compose(const DrawTarget& target) {
-    if (ClientSurface* const surface = target.dealt_surface()) return compose(*surface);
+    if (ClientSurface* const surface = target.pictured_surface()) return compose(*surface);
     take_held_semaphores();
 }
 

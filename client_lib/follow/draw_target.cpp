@@ -66,6 +66,11 @@ void DrawTarget::describe_to(Node& node) const {
     node.surfaces[surface_->id] = layout.version;
 }
 
+void DrawTarget::bind_to(Node& node) const {
+    describe_to(node);
+    glapi::pack::Bind(node.batch, surface_->id, surface_->id);
+}
+
 void DrawTarget::note_content(ShareGroup& share) const {
     if (!objects_) return;
     std::lock_guard lock(share.mutex);

@@ -75,14 +75,20 @@ public:
     ClientSurface* with_hidden_part() const {
         return surface_ && only_ == nullptr && surface_->hidden ? surface_ : nullptr;
     }
-    /// The surface whose geometry may be dealt to nodes instead; null: there is none, or it is no picture of it.
-    ClientSurface* dealt_surface() const { return only_ == nullptr ? surface_ : nullptr; }
+    /// The surface, if what is drawn is its picture; null: there is none, or it is something else.
+    ClientSurface* pictured_surface() const { return only_ == nullptr ? surface_ : nullptr; }
+    /// Some nodes may need what it holds already (window_content.h).
+    bool content_wanted() const { return surface_ && surface_->content_wanted && only_ == nullptr; }
     /// Whether what is drawn goes to a node that has a layer; a node may be left out for a while.
     bool goes_to(const Node& node) const {
         return node.alive() && (objects_ ? node.left_out.empty() : !node.left_out.contains(surface_->id));
     }
     /// Packs into the node's batch what it must know of a surface before anything is drawn, read or swapped there.
     void describe_to(Node& node) const;
+    /// The node has been told of the surface, wherever it lay then.
+    bool is_known_to(const Node& node) const { return node.surfaces.contains(surface_->id); }
+    /// The same, and a context of its own, that of the node's batch, draws to the surface and reads from it.
+    void bind_to(Node& node) const;
     void note_drawn() const {
         if (surface_) surface_->drawn = true;
     }

@@ -3,7 +3,6 @@
 // windows that no tile shows. The session's mutex is held.
 #pragma once
 
-#include <cstring>
 #include <mutex>
 #include <optional>
 
@@ -13,6 +12,8 @@
 #include "client_lib/follow/node_updater.h"
 #include "client_lib/follow/nodes.h"
 #include "client_lib/follow/object_sender.h"
+#include "client_lib/follow/open_block.h"
+#include "client_lib/follow/window_content.h"
 #include "client_lib/geometry/sight.h"
 #include "client_lib/process/options.h"
 #include "common/glstate/draw_buffers.h"
@@ -24,30 +25,15 @@ struct Followers {
     NodeUpdater& updater;
     HiddenParts& hidden;
     Dealer& dealer;
+    WindowContents& windows;
     Sight& sight;
 };
-
-/// Packs the head of a Block for these layers; its counts are filled in by end_block().
-struct OpenBlock {
-    std::size_t counts;    ///< where they stand among the operands
-    wire::PackMark start;  ///< of its commands
-};
-inline OpenBlock begin_block(wire::PackBuffer& buffer, std::uint64_t slots) {
-    const std::size_t operands = buffer.operand_bytes();
-    glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32), 0, 0);
-    return {operands + 2 * sizeof(std::uint32_t), buffer.mark()};
-}
-inline void end_block(wire::PackBuffer& buffer, const OpenBlock& block) {
-    const auto end = buffer.mark();
-    const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - block.start.commands),
-                                     static_cast<std::uint32_t>(end.operand_bytes - block.start.operand_bytes)};
-    std::memcpy(buffer.operand_at(block.counts), counts, sizeof counts);
-}
 
 /// Before the first node is told of a draw: all that it goes to have what only others have, as it is now; and what
 /// somebody keeps is done with the images that are drawn to.
 inline void before_drawing(const Followers& followers, const DrawSource& source) {
     const bool writes = source.objects.writes();
+    followers.windows.bring(source.draw);
     if (source.draw.of_objects() || writes) followers.hidden.before_drawing_to(source);
     if (writes || source.share->has_drawn.load(std::memory_order_relaxed)) bring_drawn(followers.nodes, source);
 }
@@ -87,7 +73,7 @@ void draw_on(const Followers& followers, const DrawSource& source, const Drawn& 
         pack(buffer);
         end_block(buffer, block);
     };
-    auto& [nodes, updater, hidden, dealer, sight] = followers;
+    auto& [nodes, updater, hidden, dealer, windows, sight] = followers;
     if (KeptFrame* const kept = hidden.begin_keeping(source, reach.window)) {
         Node& node = nodes[kept->layer];
         before(node, nodes.batch(node, source.id));

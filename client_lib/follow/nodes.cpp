@@ -48,13 +48,16 @@ void Nodes::forget_content(Node& node) {
     node.surfaces.clear();
 }
 
-void Nodes::begin_recordings_again() {
+bool Nodes::begin_recordings_again() {
+    bool begun = false;
     for (const auto& node : nodes_) {
         if (!node->records() || !node->alive() || !node->stream->take_begin_again()) continue;
         glapi::pack::BeginAgain(batch(*node, node->batch_context));
         send(*node);
         forget_content(*node);
+        begun = true;
     }
+    return begun;
 }
 
 void Nodes::find_everywhere() {

@@ -75,8 +75,8 @@ public:
     wire::PackBuffer& batch(Node& node, ContextId context);
     void send(Node& node);
     /// Those that record and have asked for it have nothing any more: a file can be read from there on (T7.1). Between
-    /// two frames.
-    void begin_recordings_again();
+    /// two frames. Whether there are such.
+    bool begin_recordings_again();
     RequestId next_request() { return last_request_ = RequestId(last_request_.value + 1); }
     /// Packs a question, `pack(buffer, request)`, into the node's batch, sends it and waits for `limit_ms` with the
     /// mutex held. Counted as a round trip of `function`.

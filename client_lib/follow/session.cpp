@@ -76,6 +76,7 @@ ClientSession::~ClientSession() { finish(); }
 StreamEvents ClientSession::stream_events() {
     const auto opened = [this](Node& node) {
         if (group_) introduce(node);
+        if (node.records()) want_window_contents();
         surfaces_.place_off_wall();
         if (!group_) surfaces_.ask_to_redraw();
     };
@@ -116,7 +117,9 @@ void ClientSession::adopt(const Welcome& welcome, bool moved) {
         anew = anew || !same;
     }
     if (anew) surfaces_.ask_to_redraw();
-    if (moved) surfaces_.place_anew();
+    if (!moved) return;
+    surfaces_.place_anew();
+    want_window_contents();
 }
 
 void ClientSession::take_events() {
@@ -139,8 +142,15 @@ void ClientSession::take_events() {
 void ClientSession::leave_wall() {
     moving_ = false;
     keep_drawn(nodes_);
-    if (control_->go()) take_events();
-    else nodes_.kept().clear();
+    for (const auto& [id, surface] : open_surfaces_) windows_.keep(*surface);
+    if (control_->go()) return take_events();
+    nodes_.kept().clear();
+    windows_.forget_all();
+}
+
+/// Nodes have come to frames that are drawn over earlier ones.
+void ClientSession::want_window_contents() {
+    for (const auto& [id, surface] : open_surfaces_) surface->content_wanted = true;
 }
 
 // ---- surfaces ----
@@ -166,7 +176,7 @@ void ClientSession::begin_frame(ClientSurface& surface) {
     if (surfaces_.common(surface)) control_->begin_frame(surface.id, surface.frame + 1);
     take_events();
     nodes_.wait_for_attempts(lock, kTakeUpLimit);
-    if (!surface.drawn) nodes_.begin_recordings_again();
+    if (!surface.drawn && nodes_.begin_recordings_again()) want_window_contents();
     surfaces_.begin_frame(surface);
 }
 
@@ -210,12 +220,14 @@ void ClientSession::swap(ContextId context, ClientSurface& surface) {
     {
         std::lock_guard lock(mutex_);
         whole_frames = std::exchange(surface.cleared, false);
+        const DrawTarget target(surface);
+        windows_.bring(target);
+        windows_.forget(surface.id);
         dealer_.compose(surface);
         dealer_.finish_frame(surface);
         hidden_.finish_frame(surface);
         ++surface.frame;
         surface.drawn = false;
-        const DrawTarget target(surface);
         for (const NodeIndex index : swap_nodes(surface)) {
             Node& node = nodes_[index];
             if (!target.goes_to(node)) continue;
@@ -248,6 +260,13 @@ std::vector<NodeIndex> ClientSession::swap_nodes(const ClientSurface& surface) {
 void ClientSession::submit_block(const DrawSource& source, const Packer& packer,
                                  const glstate::Projection& projection) {
     packing([&] { BlockSender(followers_, source, packer, projection, *sort_scratch_).run(); });
+}
+
+void ClientSession::before_clear(const DrawSource& source, std::uint32_t mask, bool wipes) {
+    packing([&] {
+        hidden_.before_clear(source, mask);
+        if (wipes) windows_.before_wiping(source.draw);
+    });
 }
 
 void ClientSession::delete_object(ContextId context, ClientName object) {

@@ -72,6 +72,8 @@ public:
     /// Tells every node that holds an object that it is gone.
     void delete_object(ContextId context, ClientName object);
     void destroy_context(ContextId context);
+    /// Before a clear of all of these buffers (bits of glClear); `wipes`: of a window it leaves nothing from before.
+    void before_clear(const DrawSource& source, std::uint32_t mask, bool wipes);
     /// Runs `use(HiddenParts&)`, before something that what is kept may matter to.
     template <class Use>
     void hidden_parts(Use&& use) {
@@ -120,6 +122,7 @@ private:
     void adopt(const Welcome& welcome, bool moved);
     void take_events();
     void leave_wall();
+    void want_window_contents();
     std::vector<NodeIndex> swap_nodes(const ClientSurface& surface);
     int reply_timeout_ms() const;
     /// Runs `body` with the mutex held. Where it throws, batches and mirrors may be half made: the nodes' streams fail
@@ -150,9 +153,10 @@ private:
     NodeUpdater updater_{nodes_};
     HiddenParts hidden_{nodes_, open_surfaces_};
     Dealer dealer_{nodes_, updater_, options().sort_last};
+    WindowContents windows_{nodes_, dealer_};
     Surfaces surfaces_{*control_, nodes_, hidden_, open_surfaces_};
     Sight sight_;
-    const Followers followers_{nodes_, updater_, hidden_, dealer_, sight_};
+    const Followers followers_{nodes_, updater_, hidden_, dealer_, windows_, sight_};
     const std::unique_ptr<SortScratch> sort_scratch_;
 };
 

@@ -42,6 +42,7 @@ public:
     Tiles tiles;                         ///< among which it lies; none: it was placed nowhere yet
     std::optional<Placement> next;       ///< from walld, for a frame that begins
     bool cleared = false;                ///< all of its back buffer, since the last swap
+    bool content_wanted = false;         ///< by nodes that have seen no frame of it, if it is drawn over
     bool depth_images = false;           ///< depth or stencil was drawn as an image
     CopyHabit copies;                    ///< out of it
     Deal deal;                           ///< of its geometry to nodes

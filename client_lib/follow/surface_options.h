@@ -35,7 +35,8 @@ struct SurfaceOptions {
     Extent size;                                        ///< at creation
     std::function<std::optional<Extent>()> query_size;  ///< window's size now; empty function: it never changes
     std::string title;
-    WindowMessages messages;  ///< of a window; empty functions: it cannot be spoken to
+    std::optional<NativeWindow> native;  ///< none: it is no window of the program's own
+    WindowMessages messages;             ///< of a window; empty functions: it cannot be spoken to
 };
 
 }  // namespace wall::client

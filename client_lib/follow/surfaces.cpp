@@ -70,7 +70,11 @@ void Surfaces::open(ClientSurface& surface) {
     surface.layout.width = std::max(1u, size.width);
     surface.layout.height = std::max(1u, size.height);
     if (!surface.options.visible) return apply_layout(surface, Placement{});
-    control_.surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title,
+    control_.surface_open(surface.id,
+                          {.width = surface.layout.width,
+                           .height = surface.layout.height,
+                           .title = surface.options.title,
+                           .native = surface.options.native},
                           surface.options.messages);
     const auto placement = control_.wait_placement(surface.id, kPlacementTimeout);
     if (group_) surface.window = {surface.layout.width, surface.layout.height};

@@ -122,13 +122,11 @@ void ControlLink::queue(const std::string& envelope) {
     if (up_) append_framed(outbox_, envelope);
 }
 
-void ControlLink::surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, const std::string& title,
-                               WindowMessages messages) {
+void ControlLink::surface_open(SurfaceId id, OpenWindow window, WindowMessages messages) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
-    surfaces_[id] = OpenSurface{.width = width,
-                                .height = height,
-                                .title = title,
+    queue(encode_surface_open(id, window));
+    surfaces_[id] = OpenSurface{.window = std::move(window),
                                 .messages = std::move(messages),
                                 .awaited = 1,
                                 .offered = {},
@@ -136,7 +134,6 @@ void ControlLink::surface_open(SurfaceId id, std::uint32_t width, std::uint32_t 
                                 .wanted = {},
                                 .note = {},
                                 .member = {}};
-    queue(encode_surface_open(id, width, height, title));
     wake();
 }
 
@@ -144,8 +141,8 @@ void ControlLink::surface_resize(SurfaceId id, std::uint32_t width, std::uint32_
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
     auto& surface = surfaces_[id];
-    surface.width = width;
-    surface.height = height;
+    surface.window.width = width;
+    surface.window.height = height;
     ++surface.awaited;
     placements_.erase(id);
     queue(encode_surface_resize(id, width, height));
@@ -552,7 +549,7 @@ void ControlLink::take_up(Greeted greeted, bool moved) {
             surface.wanted_version = 0;
             surface.note.clear();
         }
-        queue(encode_surface_open(id, surface.width, surface.height, surface.title, surface.restore()));
+        queue(encode_surface_open(id, surface.window, surface.restore()));
         surface.offered.clear();  // the new walld counts its versions from 1
         surface.noted = 0;
     }

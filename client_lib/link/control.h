@@ -43,8 +43,7 @@ public:
     const Welcome& welcome() const { return welcome_; }
 
     /// `messages`: how walld's wishes reach the window.
-    void surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, const std::string& title,
-                      WindowMessages messages = {});
+    void surface_open(SurfaceId id, OpenWindow window, WindowMessages messages = {});
     /// How tiles show the window that look elsewhere; walld is told with the next figures.
     enum class Views : std::uint8_t { none, seen, flat };
     void surface_views(SurfaceId id, Views views);
@@ -90,8 +89,7 @@ public:
 
 private:
     struct OpenSurface {
-        std::uint32_t width = 0, height = 0;
-        std::string title;
+        OpenWindow window;
         WindowMessages messages;
         unsigned awaited = 0;                         ///< placements that answer us; another one is a move
         std::uint32_t noted = 0;                      ///< layout version that walld knows to be adopted

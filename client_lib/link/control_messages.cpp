@@ -367,14 +367,17 @@ std::string encode(const Hello& hello) {
     });
 }
 
-std::string encode_surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, std::string_view title,
-                                const std::optional<Restore>& restore) {
+std::string encode_surface_open(SurfaceId id, const OpenWindow& window, const std::optional<Restore>& restore) {
     return in_envelope(envelope::surface_open, [&](pbf_writer& out) {
         out.add_uint32(1, id.value);
-        out.add_uint32(2, width);
-        out.add_uint32(3, height);
-        put_string(out, 4, title);
+        out.add_uint32(2, window.width);
+        out.add_uint32(3, window.height);
+        put_string(out, 4, window.title);
         if (restore) put_restore(out, 5, *restore);
+        if (!window.native) return;
+        pbf_writer native(out, 6);
+        put_string(native, 1, window.native->display);
+        native.add_uint64(2, window.native->number);
     });
 }
 

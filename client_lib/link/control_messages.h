@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "client_lib/link/parallel.h"
+#include "client_lib/link/window_messages.h"
 #include "client_lib/process/traffic.h"
 #include "common/base/ids.h"
 #include "common/base/result.h"
@@ -147,14 +148,20 @@ struct MoveRequest {
     std::string address;  ///< unix:PATH
 };
 
+/// A window that walld is told of.
+struct OpenWindow {
+    std::uint32_t width = 0, height = 0;  ///< pixels
+    std::string title;
+    std::optional<NativeWindow> native;
+};
+
 /// A message from walld; nothing for one that this version does not know.
 using FromWalld = std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted,
                                SurfaceNote, TilesChanged, PlacementAgreed, MoveRequest>;
 
 // One encoded Envelope each, without the length in front.
 std::string encode(const Hello& hello);
-std::string encode_surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, std::string_view title,
-                                const std::optional<Restore>& restore = {});
+std::string encode_surface_open(SurfaceId id, const OpenWindow& window, const std::optional<Restore>& restore = {});
 /// Asks walld for a sign of life.
 std::string encode_ping();
 std::string encode_surface_resize(SurfaceId id, std::uint32_t width, std::uint32_t height);

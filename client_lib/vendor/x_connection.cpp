@@ -6,6 +6,7 @@
 #undef min
 #undef max
 
+#include <cstdlib>
 #include <mutex>
 #include <unordered_map>
 
@@ -87,12 +88,22 @@ std::uint32_t XConnection::new_id() const {
     return connection ? xcb_generate_id(connection) : 0;
 }
 
+namespace {
+
+NativeWindow native_window(const std::string& display, xcb_window_t window) {
+    const char* const usual = std::getenv("DISPLAY");
+    return {display.empty() && usual != nullptr ? usual : display, window};
+}
+
+}  // namespace
+
 SurfaceOptions window_surface(std::shared_ptr<XConnection> connection, xcb_window_t window, Extent size,
                               const SurfaceFormat& format) {
     SurfaceOptions options;
     options.format = format;
     options.size = size;
     options.title = connection->title_of(window);
+    options.native = native_window(connection->display_name(), window);
     options.messages = window_messages(connection->display_name(), window);
     options.query_size = [connection = std::move(connection), window] { return connection->size_of(window); };
     return options;

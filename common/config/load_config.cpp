@@ -76,9 +76,9 @@ void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
 
 TileConfig read_tile(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
     read.only(table, "[[node.tile]]",
-              {"name",     "rect",   "output",  "display",  "monitor", "position", "mode",  "gpu",
-               "rotation", "pixels", "size_mm", "bezel_mm", "warp",    "mpcdi",    "blend", "color",
-               "yaw",      "pitch",  "roll",    "fov",      "screen",  "eye",      "stereo"});
+              {"name",  "rect",     "output", "display", "monitor",  "parent", "position", "mode",
+               "gpu",   "rotation", "pixels", "size_mm", "bezel_mm", "warp",   "mpcdi",    "blend",
+               "color", "yaw",      "pitch",  "roll",    "fov",      "screen", "eye",      "stereo"});
     TileConfig out{.name = read.text(table, "name"), .rect = read.rect(table, "rect")};
     read_output(read, table, out);
     out.gpu = read_gpu(read, table);

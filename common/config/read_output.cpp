@@ -11,6 +11,7 @@ namespace wall::config {
 namespace {
 
 constexpr std::int64_t kMaxPosition = 32767;        // X has 16 bits for it
+constexpr std::int64_t kMaxWindow = (1 << 29) - 1;  // X names its windows by 29 bits
 constexpr std::string_view kKms = "kms";            // alone, or before ":CONNECTOR"
 constexpr std::size_t kMaxConnectorName = 32;       // the kernel's names are shorter
 constexpr double kLeastRate = 1, kMostRate = 1000;  // Hz
@@ -89,6 +90,10 @@ WindowConfig read_window(TreeReader& read, const toml::table& tile) {
         out.monitor = read.text(tile, "monitor");
         refuse_key(read, tile, "position", "beside 'monitor': expected one of them");
     }
+    if (tile.get("parent")) {
+        out.parent = static_cast<std::uint32_t>(read.integer(tile, "parent", 1, kMaxWindow, 0));
+        refuse_key(read, tile, "monitor", "beside 'parent': expected one of them");
+    }
     const auto position = read.position(tile, "position", kMaxPosition);
     out.x = position[0];
     out.y = position[1];
@@ -122,7 +127,7 @@ void check_windows(TreeReader& read, const toml::table& tile, const TileConfig& 
 void read_output(TreeReader& read, const toml::table& tile, TileConfig& out) {
     const auto output = read.text(tile, "output", "headless");
     if (output != "window")
-        for (const auto* key : {"display", "monitor", "position"})
+        for (const auto* key : {"display", "monitor", "parent", "position"})
             refuse_key(read, tile, key, "is of a tile in a window: expected output = \"window\" beside it");
     const bool kms = output == kKms || output.starts_with(std::string(kKms) + ":");
     if (!kms)

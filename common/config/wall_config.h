@@ -30,7 +30,8 @@ enum class TriangleOrder { automatic, on, off };
 struct WindowConfig {
     std::string display;  ///< such as ":0"; empty: DISPLAY in the tileserver's environment
     std::string monitor;  ///< RandR's name of the one that the window covers; empty: of the tile's size, at `x`, `y`
-    std::int32_t x = 0, y = 0;  ///< pixels of the X screen
+    std::int32_t x = 0, y = 0;  ///< pixels of the X screen, or of `parent`
+    std::uint32_t parent = 0;   ///< the X window that it lies in; 0: it is a window of its own
     bool operator==(const WindowConfig&) const = default;
 };
 

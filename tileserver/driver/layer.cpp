@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <utility>
 
 #include "common/glapi/texture_target.h"
@@ -250,6 +251,30 @@ void Layer::write_block(const PixelBlock& block) {
                           GL_RGBA, GL_UNSIGNED_BYTE, block.colors.data());
     gl_.TextureSubImage2D(depth_stencil_, 0, x, y, block.area.width, block.area.height, GL_DEPTH_STENCIL,
                           GL_UNSIGNED_INT_24_8, block.depths.data());
+}
+
+void Layer::write_content(const geom::Rect& area, GLenum format, std::span<const std::byte> pixels) {
+    constexpr std::size_t kPixel = sizeof(std::uint32_t);
+    const bool colors = format == GL_RGBA;
+    const geom::Rect part = geom::intersect(area, geometry_.pixels());
+    if (part.empty() || (!colors && depth_stencil_ == 0)) return;
+    const auto columns = static_cast<std::size_t>(part.width), rows = static_cast<std::size_t>(part.height);
+    std::vector<std::uint32_t> values(columns * rows);
+    for (std::size_t row = 0; row < rows; ++row) {
+        const auto from = static_cast<std::size_t>(part.y - area.y) + row;
+        const std::size_t at = from * static_cast<std::size_t>(area.width) + static_cast<std::size_t>(part.x - area.x);
+        std::memcpy(&values[(flip_y_ ? rows - 1 - row : row) * columns], &pixels[at * kPixel], columns * kPixel);
+    }
+    if (format == GL_DEPTH_COMPONENT)
+        for (std::uint32_t& value : values) value &= 0xffffff00;
+    const auto [x, y] = texture_place(part);
+    gl_.Flush();  // as in copy()
+    if (colors)
+        gl_.TextureSubImage2D(format_.double_buffered ? back_ : front_, 0, x, y, part.width, part.height, GL_RGBA,
+                              GL_UNSIGNED_BYTE, values.data());
+    else
+        gl_.TextureSubImage2D(depth_stencil_, 0, x, y, part.width, part.height, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
+                              values.data());
 }
 
 std::pair<std::int32_t, std::int32_t> Layer::texture_place(const geom::Rect& area) const {

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,10 @@ public:
     void read_block(PixelBlock& block) const;
     /// The same, written; of the stencil values those that were read.
     void write_block(const PixelBlock& block);
+    /// The same of one plane of an image of `area`, in window pixels and bottom row first: GL_RGBA of bytes,
+    /// GL_DEPTH_STENCIL of 24 and 8 bits, or GL_DEPTH_COMPONENT of 32. What the layer does not hold is left out, and so
+    /// are depths of a layer without them.
+    void write_content(const geom::Rect& area, GLenum format, std::span<const std::byte> pixels);
     /// All of it has no colour, this depth (0 or 1) and stencil value 0.
     void clear_to_depth(std::uint32_t depth);
 

@@ -29,6 +29,8 @@ struct LayerGeometry {
     /// The layer's bottom left in the surface's pixels, y up.
     std::int32_t offset_x() const { return area.x - surface.x; }
     std::int32_t offset_y() const { return surface.bottom() - area.bottom(); }
+    /// The layer in the surface's pixels, y up; in the window's, if it is not scaled.
+    geom::Rect pixels() const { return {offset_x(), offset_y(), area.width, area.height}; }
     /// What the layer holds of the window.
     geom::PixelRect window_area() const {
         const auto left = static_cast<float>(offset_x() / scale_x()),

@@ -81,6 +81,13 @@ void clear_buffer(const Gl& gl, GLenum buffer, GLint drawbuffer, GLenum type, co
     else gl.ClearBufferfi(buffer, drawbuffer, real[0], whole[1]);
 }
 
+/// What WindowContent may be.
+bool is_content(GLenum format, GLenum type) {
+    return (format == GL_RGBA && type == GL_UNSIGNED_BYTE) ||
+           (format == GL_DEPTH_STENCIL && type == GL_UNSIGNED_INT_24_8) ||
+           (format == GL_DEPTH_COMPONENT && type == GL_UNSIGNED_INT);
+}
+
 }  // namespace
 
 bool DrawCommands::outside_begin() {
@@ -214,6 +221,34 @@ void DrawCommands::DrawPixels(std::int32_t width, std::int32_t height, GLenum fo
         if (block_.layer != nullptr && block_.layer->samples() != 0 && format == GL_STENCIL_INDEX)
             spread_stencil_of_image(place, width, height);
     });
+}
+
+void DrawCommands::WindowContent(std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height, GLenum format,
+                                 GLenum type, std::span<const std::byte> pixels) {
+    constexpr std::int32_t kMost = wire::kMaxSurfaceExtent;
+    if (!outside_begin()) return;
+    if (!is_content(format, type) || x < 0 || y < 0 || width <= 0 || height <= 0 || x > kMost || y > kMost ||
+        width > kMost || height > kMost)
+        return execution_.refuse("no content that a window can have");
+    if (!image_fits(execution_, format, type, {width, height, 1}, pixels)) return;
+    if (!block_.draws || block_.layer == nullptr) return;
+    const geom::Rect area{x, y, width, height};
+    const LayerGeometry& geometry = block_.layer->geometry();
+    if (geometry.scaled() || geometry.view || block_.layer->samples() != 0)
+        return draw_scaled_content(area, format, type, pixels);
+    block_.layer->write_content(area, format, pixels);
+}
+
+/// As an image, which goes through the driver's rounding.
+void DrawCommands::draw_scaled_content(const geom::Rect& area, GLenum format, GLenum type,
+                                       std::span<const std::byte> pixels) {
+    const auto kept = std::exchange(block_.raster, {static_cast<float>(area.x), static_cast<float>(area.y), 0, 1});
+    at_raster_position([&](const RasterPlace& place) {
+        execution_.gl.DrawPixels(area.width, area.height, format, type, pixels.data());
+        if (block_.layer->samples() != 0 && format == GL_DEPTH_STENCIL)
+            spread_stencil_of_image(place, area.width, area.height);
+    });
+    block_.raster = kept;
 }
 
 void DrawCommands::Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove,

@@ -28,6 +28,8 @@ public:
                     std::span<const std::byte> pixels);
     void Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove,
                 std::span<const std::byte> bits);
+    void WindowContent(std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height, GLenum format,
+                       GLenum type, std::span<const std::byte> pixels);
     void RunCall(ClientName run);
     void InitNames();
     void LoadName(std::uint32_t name);
@@ -49,6 +51,7 @@ private:
     bool call_parts(const RunContent& run);
     template <class Draw>
     void at_raster_position(Draw&& draw);
+    void draw_scaled_content(const geom::Rect& area, GLenum format, GLenum type, std::span<const std::byte> pixels);
     void spread_stencil_of_image(const RasterPlace& place, std::int32_t width, std::int32_t height);
 
     Execution& execution_;

@@ -31,12 +31,6 @@ std::vector<Receiver> receivers_of(std::span<const std::byte> bytes) {
 /// The depth that nothing lies behind, where nearer depths are those that pass.
 std::uint32_t farthest(GLenum by) { return by == GL_GREATER || by == GL_GEQUAL ? 0 : 1; }
 
-/// What the layer holds, in window pixels.
-geom::Rect window_area(const Layer& layer) {
-    const LayerGeometry& geometry = layer.geometry();
-    return {geometry.offset_x(), geometry.offset_y(), layer.width(), layer.height()};
-}
-
 }  // namespace
 
 SurfaceReplica* PartialCommands::known_surface(SurfaceId id) {
@@ -160,7 +154,7 @@ void PartialCommands::merge_into(Layer& layer, std::span<const PartialKey> keys,
         const auto partial = decode_partial(*message);
         if (!partial) return execution_.refuse(partial.error().message);
         ++work.partials_merged;
-        const geom::Rect held = window_area(layer);
+        const geom::Rect held = layer.geometry().pixels();
         if (partial->runs.empty() || layer.geometry().scaled() || geom::intersect(partial->area, held) != partial->area)
             continue;
         if (block.area != partial->area) {

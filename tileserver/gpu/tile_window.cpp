@@ -55,19 +55,19 @@ TileWindow::~TileWindow() {
 
 Result<void> TileWindow::create(const geom::Rect& place, const WindowLook& look) {
     Display* display = display_.get();
-    const Window root = DefaultRootWindow(display);
+    const Window root = spec_.parent != 0 ? spec_.parent : DefaultRootWindow(display);
     Visual* visual = true_color_visual(display, look.visual, kWindowDepth);
     XSetWindowAttributes attributes{};
     attributes.background_pixel = look.background;
     attributes.border_pixel = 0;
     attributes.colormap = colormap_ = XCreateColormap(display, root, visual, AllocNone);
-    attributes.cursor = cursor_ = empty_cursor(display);
+    if (spec_.parent == 0) attributes.cursor = cursor_ = empty_cursor(display);
     attributes.event_mask = ExposureMask | StructureNotifyMask;
     resize(place.width, place.height);
     window_ = XCreateWindow(display, root, place.x, place.y, static_cast<unsigned>(width()),
                             static_cast<unsigned>(height()), 0, kWindowDepth, InputOutput, visual,
                             CWBackPixel | CWBorderPixel | CWColormap | CWCursor | CWEventMask, &attributes);
-    tell_window_manager(place);
+    if (spec_.parent == 0) tell_window_manager(place);
     XMapRaised(display, window_);
     return display_.check_requests("the window of tile '" + spec_.tile + "'");
 }

@@ -22,6 +22,9 @@ struct WindowSpec {
     std::string tile;        ///< its name
     std::string monitor;     ///< that the window covers; empty: it covers `rect`
     geom::Rect rect;         ///< pixels of the X screen; with a monitor only the tile's size counts
+    /// The window that it lies in, which belongs to another program, and gets all that is typed and clicked there; 0:
+    /// none, and `rect` is in that window's pixels otherwise.
+    unsigned long parent = 0;
 };
 
 /// What it is made with. Pixels of 8 bits a channel without alpha, so that they are shown as they are.

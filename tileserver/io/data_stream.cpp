@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 
 #include "common/log/log.h"
 #include "common/log/refusals.h"
@@ -19,6 +20,7 @@
 #include "common/wire/limits.h"
 #include "gen/glapi/wire.gen.h"
 #include "proto/control.pb.h"
+#include "tileserver/partials/partial_format.h"
 
 namespace wall::tileserver {
 namespace {
@@ -168,12 +170,17 @@ asio::awaitable<std::optional<Admission>> DataStream::find_admission(const proto
 }
 
 asio::awaitable<Result<void>> DataStream::take_partials() {
+    std::optional<NodeIndex> from;
     while (!closing_) {
         auto frame = co_await source_.next();
-        if (!frame) co_return tl::unexpected(frame.error());
+        if (!frame) {
+            if (from) host_.render().lose_partials(session_, *from);
+            co_return tl::unexpected(frame.error());
+        }
         if (frame->kind != wire::FrameKind::partial)
             co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
         const auto& payload = frame->payload;
+        if (const auto key = key_of_partial(payload)) from = key->from;
         auto taken = host_.render().take_partial(session_, {payload.begin(), payload.end()});
         if (!taken) co_return taken;
     }

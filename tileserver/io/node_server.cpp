@@ -11,6 +11,7 @@
 #include <cstring>
 #include <exception>
 #include <map>
+#include <set>
 #include <string>
 
 #include "common/log/log.h"
@@ -61,7 +62,8 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
         request.windows.push_back({tile.slot,
                                    tile.name,
                                    tile.window->monitor,
-                                   {tile.window->x, tile.window->y, tile.output.width, tile.output.height}});
+                                   {tile.window->x, tile.window->y, tile.output.width, tile.output.height},
+                                   tile.window->parent});
     }
     return request;
 }
@@ -458,6 +460,9 @@ void NodeServer::set_peers(const proto::PartialPeers& peers) {
         nodes.emplace(NodeIndex(node.node()),
                       PartialPeer{std::move(*address), node.ticket(), key ? std::optional(*key) : std::nullopt});
     }
+    std::set<NodeIndex> there;
+    for (const auto& node : peers.nodes()) there.insert(NodeIndex(node.node()));
+    render_->set_partial_nodes(SessionId(peers.session()), std::move(there));
     partial_links_.set_peers(SessionId(peers.session()), std::move(nodes));
 }
 

@@ -10,6 +10,7 @@ Result<void> PartialBox::put(SessionId session, std::vector<std::byte> message) 
     if (!key) return tl::unexpected(key.error());
     const std::lock_guard lock(mutex_);
     OfSession& its = sessions_[session];
+    its.gone.erase(key->from);
     const auto closed = its.closed.find({key->surface, key->rank});
     if (closed != its.closed.end() && key->sequence <= closed->second) return {};
     if (its.bytes + message.size() > kMostBytes) return fail("more partial pictures than a session may have");
@@ -23,8 +24,9 @@ Result<void> PartialBox::put(SessionId session, std::vector<std::byte> message) 
 bool PartialBox::has(SessionId session, std::span<const PartialKey> keys) const {
     const std::lock_guard lock(mutex_);
     const auto its = sessions_.find(session);
-    return std::ranges::all_of(
-        keys, [&](const PartialKey& key) { return its != sessions_.end() && its->second.messages.contains(key); });
+    return std::ranges::all_of(keys, [&](const PartialKey& key) {
+        return its != sessions_.end() && (its->second.messages.contains(key) || its->second.gone.contains(key.from));
+    });
 }
 
 std::optional<std::vector<std::byte>> PartialBox::take(SessionId session, const PartialKey& key) {
@@ -47,6 +49,21 @@ void PartialBox::close(SessionId session, SurfaceId surface, std::uint32_t rank,
         if (old) its.bytes -= at->second.size();
         at = old ? its.messages.erase(at) : std::next(at);
     }
+}
+
+void PartialBox::lose(SessionId session, NodeIndex from) {
+    const std::lock_guard lock(mutex_);
+    sessions_[session].gone.insert(from);
+}
+
+void PartialBox::set_nodes(SessionId session, std::set<NodeIndex> nodes) {
+    const std::lock_guard lock(mutex_);
+    OfSession& its = sessions_[session];
+    for (const NodeIndex before : its.nodes)
+        if (!nodes.contains(before)) its.gone.insert(before);
+    for (const NodeIndex now : nodes)
+        if (!its.nodes.contains(now)) its.gone.erase(now);
+    its.nodes = std::move(nodes);
 }
 
 void PartialBox::forget(SessionId session) {

@@ -504,6 +504,16 @@ Result<void> RenderThread::take_partial(SessionId session, std::vector<std::byte
     return put;
 }
 
+void RenderThread::lose_partials(SessionId session, NodeIndex from) {
+    partials_.lose(session, from);
+    wake();
+}
+
+void RenderThread::set_partial_nodes(SessionId session, std::set<NodeIndex> nodes) {
+    partials_.set_nodes(session, std::move(nodes));
+    wake();
+}
+
 void RenderThread::add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue,
                               const Membership& membership, Rank rank) {
     post([=](Loop& loop) { loop.add(stream, session, queue, membership, rank); });

@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -143,6 +144,9 @@ public:
     void ready(PictureId stream, bool even_unchanged);
     /// Another node has sent a partial picture of one of the session's windows; the error says what is wrong with it.
     Result<void> take_partial(SessionId session, std::vector<std::byte> message);
+    /// Whose partial pictures are not waited for any more, and whose are (PartialBox).
+    void lose_partials(SessionId session, NodeIndex from);
+    void set_partial_nodes(SessionId session, std::set<NodeIndex> nodes);
     /// A queue has got a batch.
     void wake();
 

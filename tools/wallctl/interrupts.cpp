@@ -7,14 +7,14 @@
 namespace wall::wallctl {
 namespace {
 
-std::atomic<bool> has_come = false;
+std::atomic<std::size_t> have_come = 0;
 
 }  // namespace
 
 void watch_for_interrupts() {
-    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { has_come = true; });
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { ++have_come; });
 }
 
-bool interrupted() { return has_come; }
+std::size_t interruptions() { return have_come; }
 
 }  // namespace wall::wallctl

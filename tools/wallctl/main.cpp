@@ -22,6 +22,7 @@
 #include "tools/wallctl/record.h"
 #include "tools/wallctl/record_commands.h"
 #include "tools/wallctl/tables.h"
+#include "tools/wallctl/take.h"
 #include "tools/wallctl/watch.h"
 
 namespace {
@@ -50,7 +51,7 @@ struct Options {
     int frames = 1, frame = 1, weight = 0;
     double separation = 100 * wall::kUsualSeparation, distance = 0;
     unsigned fps = 10;
-    double seconds = 10, interval = 1, snapshot = 10;
+    double seconds = 10, interval = 1, snapshot = 10, until_back = 0;
     std::uint64_t count = 0;
     bool off = false, of_output = false, inverted = false;
     std::string axis = "x";
@@ -408,6 +409,12 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     move->add_option("--to", o.name,
                      "the other wall: unix:PATH of its control socket (or of an agent of it) on the program's machine")
         ->required();
+    auto* taking =
+        verb("take", "puts a program into its own X window while it runs, until Ctrl-C puts it back on the wall", [&o] {
+            return print(o, take(o.walld, {o.id, o.until_back, !o.as_json}), kNoTable);
+        });
+    add_id(taking, o);
+    taking->add_option("--seconds", o.until_back, "puts it back after so long")->check(CLI::Range(0.1, 86400.0));
     auto* waiting = verb("wait", "returns when a frame is shown on all tiles", [&o] { return wait(o); });
     add_id(waiting, o);
     waiting->add_option("--frame", o.frame, "its number")->required()->check(CLI::PositiveNumber);

@@ -32,11 +32,17 @@ json views_json(SurfaceEntry::Views views) {
     return views == SurfaceEntry::Views::seen ? "seen" : "flat";
 }
 
+json native_json(const std::optional<proto::NativeWindow>& window) {
+    if (!window) return nullptr;
+    return {{"display", window->display()}, {"id", window->id()}};
+}
+
 json surface_json(const Wall& wall, const SurfaceKey& key) {
     const auto& surface = *wall.find(key);
     const auto& stacking = wall.stacking();
     return {{"id", fmt::format("{}.{}", key.session.value, key.surface.value)},
             {"title", surface.title},
+            {"x_window", native_json(surface.native)},
             {"width", surface.width},
             {"height", surface.height},
             {"rect", rect_json(surface.place.wanted())},

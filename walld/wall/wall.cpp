@@ -28,6 +28,11 @@ bool has_ticket(const proto::NodeHello& hello, SessionId id, const std::string& 
     });
 }
 
+std::optional<proto::NativeWindow> native_of(const proto::SurfaceOpen& message) {
+    if (!message.has_native() || message.native().display().size() > kMaxText) return std::nullopt;
+    return message.native();
+}
+
 }  // namespace
 
 Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random)
@@ -92,6 +97,7 @@ void Wall::node_leaves(NodeIndex node, Clock::time_point now, bool link_lost) {
     taking_tiles_.erase(node);
     if (moving_ && (moving_->from == node || moving_->to == node)) end_move(false, now);
     tell_tiles();
+    for (const auto& [id, session] : sessions_) list_peers(id, session);
     if (link_lost) missed_[node] = now + kMissedLimit;
     else tell_gone(node);
     for_each_surface(
@@ -280,16 +286,24 @@ bool Wall::nodes_reach_each_other() const {
 /// they can.
 void Wall::tell_peers(SessionId id, SessionEntry& session) {
     if (!session.sort_last) return;
-    proto::PartialPeers peers;
-    peers.set_session(id.value);
-    for (const NodeIndex i : nodes_.ids())
-        if (nodes_[i].up && session.tickets.contains(i)) *peers.add_nodes() = node_up_message(i, session.tickets.at(i));
     for (const NodeIndex i : nodes_.ids()) {
         if (!nodes_[i].up || !session.tickets.contains(i)) continue;
         hand_out_ticket(id, session, i);
         out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(i, session.tickets.at(i))));
-        if (nodes_[i].config->roles.render) out_.to_node(i, make(&proto::Envelope::mutable_partial_peers, peers));
     }
+    list_peers(id, session);
+}
+
+/// Who draws for others hears where they are; who shows what they draw, whether they are there.
+void Wall::list_peers(SessionId id, const SessionEntry& session) {
+    if (!session.sort_last) return;
+    proto::PartialPeers peers;
+    peers.set_session(id.value);
+    const auto has_it = [&](NodeIndex i) { return nodes_[i].up && session.tickets.contains(i); };
+    for (const NodeIndex i : nodes_.ids())
+        if (has_it(i)) *peers.add_nodes() = node_up_message(i, session.tickets.at(i));
+    for (const NodeIndex i : nodes_.ids())
+        if (has_it(i)) out_.to_node(i, make(&proto::Envelope::mutable_partial_peers, peers));
 }
 
 void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank, const proto::Resume& again) {
@@ -364,6 +378,7 @@ SurfaceEntry& Wall::add_surface(const SurfaceKey& key, const proto::SurfaceOpen&
     SurfaceEntry surface{.width = message.width(),
                          .height = message.height(),
                          .title = message.title().substr(0, kMaxText),
+                         .native = native_of(message),
                          .place = PlacementTrack(),
                          .note = {},
                          .agreed = {},

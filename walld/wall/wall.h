@@ -101,6 +101,7 @@ struct SurfaceKey {
 struct SurfaceEntry {
     std::uint32_t width = 0, height = 0;  ///< the program's window
     std::string title;
+    std::optional<proto::NativeWindow> native;                  ///< the program's own
     PlacementTrack place;                                       ///< on the canvas
     enum class Views { none, seen, flat } views = Views::none;  ///< how tiles show it that look elsewhere
     bool scaled = false;                  ///< the rectangle was given; else it follows the window's size
@@ -343,6 +344,7 @@ private:
     void hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node);
     bool nodes_reach_each_other() const;
     void tell_peers(SessionId id, SessionEntry& session);
+    void list_peers(SessionId id, const SessionEntry& session);
     proto::Quota quota_of_programs() const;
     void end_who_has_too_much(NodeIndex node);
     std::set<NodeIndex> nodes_under(const geom::Rect& rect) const;

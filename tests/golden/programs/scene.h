@@ -22,6 +22,7 @@ struct Needs {
     bool egl = false;
     int es = 0;       ///< a context of that version of OpenGL ES, by EGL
     int samples = 0;  ///< of a pixel, of which pixels are made before a frame is read; there is no accumulation buffer
+    bool stencil = true;
     bool srgb = false;       ///< Mesa keeps what golden.py takes away from it otherwise: sRGB in framebuffers
     bool asks_srgb = false;  ///< asks for a window that has it
     bool stereo = false;     ///< buffers for two eyes; where there are none, it draws what one of them sees

@@ -87,6 +87,16 @@ class Moves(unittest.TestCase):
         expected = self.picture_of(app)
         self.assert_shown(self.other, self.move(app, self.first, self.other), expected)
 
+    def test_what_a_window_holds_that_is_never_cleared(self) -> None:
+        for options in (), ("--stencil", 0), ("--samples", 4):
+            with self.subTest(options=options):
+                app = self.start("drawn_over", *options)
+                expected = self.picture_of(app)
+                self.assert_shown(self.other, self.move(app, self.first, self.other), expected)
+                self.assert_shown(self.first, self.move(app, self.other, self.first), expected)
+                app.kill()
+                app.wait()
+
     def test_nodes_of_the_other_wall_get_it_from_each_other(self) -> None:
         app = self.start()
         expected = self.picture_of(app)

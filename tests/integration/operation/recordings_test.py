@@ -25,9 +25,10 @@ SAME_TILES = {"tiles": (2, 2), "tile_size": (200, 150)}
 OTHER_TILES = {"tiles": (3, 1), "tile_size": (134, 300), "one_node": True}
 LIMIT = 30.0  # seconds, for what takes a moment
 # Scenes of tests/golden, and how many frames each has: arrays, textures, display lists, framebuffer objects, shaders,
-# buffers, transform feedback, and what is copied out of the window.
+# buffers, transform feedback, what is copied out of the window, and what is drawn over earlier frames.
 SCENES = {"changing_arrays": 8, "texture_filters": 6, "texture_updates": 4, "list_geometry": 4, "framebuffer": 4,
-          "shader_placed_mesh": 4, "vertex_buffers": 4, "captured_vertices": 5, "window_copies": 6}
+          "shader_placed_mesh": 4, "vertex_buffers": 4, "captured_vertices": 5, "window_copies": 6,
+          "kept_back_buffer": 5}
 
 
 def picture(wall: Wall) -> numpy.ndarray:
@@ -186,6 +187,26 @@ class Recordings(unittest.TestCase):
             wall.ctl("close", session)
             self.assertEqual(player.wait(LIMIT), 0)
 
+    def test_what_a_window_holds_that_is_never_cleared(self) -> None:
+        with Wall(**SAME_TILES, environment=DRIVER) as wall:
+            for options in (), ("--stencil", 0), ("--samples", 4):
+                with self.subTest(options=options):
+                    app = wall.run(build_folder() / "tests" / "drawn_over", *map(str, options), rect=(0, 0, *WINDOW),
+                                   env=self.x.environment())
+                    session = wall.wait_session(app)
+                    wall.wait(session, 5)
+                    expected = picture(wall)
+                    path = wall.folder / "over.wgl"
+                    recorder = Recorder(wall, session, path, "--snapshot", 0.3)
+                    time.sleep(1)
+                    recorder.finish()
+                    app.kill()
+                    app.wait()
+                    told = info(path)
+                    self.assertGreater(len(told["segments"]), 2)
+                    for frame in (1, told["segments"][1]["frame"] + 1, told["frames"]):
+                        self.assertEqual(int((self.shown(wall, path, frame) != expected).sum()), 0, f"frame {frame}")
+
     def test_windows_are_moved_and_nodes_come_late_while_it_plays(self) -> None:
         with Wall(**SAME_TILES, environment=DRIVER) as wall:
             path, pictures = self.record(wall, "texture_updates")
@@ -229,6 +250,10 @@ class Recordings(unittest.TestCase):
             time.sleep(0.5)
             wall.hold(session)
             time.sleep(1)
+            frames = lambda: wall.sessions()[0]["traffic"]["frames"]  # noqa: E731
+            before = frames()
+            time.sleep(1)
+            self.assertLess(frames() - before, 10, "it goes on at the pace of the limit, four times a second")
             for _ in range(3):
                 frame = wall.wait(session, 1)
                 wall.step(session)

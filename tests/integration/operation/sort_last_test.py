@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 import unittest
 from pathlib import Path
 
@@ -87,10 +88,13 @@ class ProgramsThatAreDealt(unittest.TestCase):
         app, session = self.start(wall, *MARCH)
         self.picture(wall, session, 2)
         wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
-        wall.daemons["draws0"].kill()
-        wall.daemons["draws0"].wait()
         wall.hold(session, False)
         wall.wait(session, 10)
+        wall.daemons["draws0"].kill()
+        wall.daemons["draws0"].wait()
+        killed = time.monotonic()
+        wall.wait(session, wall.wait(session, 1) + 5)
+        self.assertLess(time.monotonic() - killed, 1.0, "nobody waits for what it would have drawn")
         wall.hold(session)
         after = self.picture(wall, session, 1)
         frame = next(s for s in wall.sessions() if s["id"] == session)["surfaces"][0]["frame"]

@@ -159,6 +159,11 @@ rect = [10, 0, 10, 10]
 output = "window"
 position = [1920, 7]
 [[node.tile]]
+name = "inside"
+rect = [30, 10, 10, 10]
+output = "window"
+parent = 0x1400003
+[[node.tile]]
 name = "covering"
 rect = [20, 0, 10, 10]
 output = "window"
@@ -178,7 +183,8 @@ display = ":1"
     EXPECT_STREQ(output_name(tiles[0]), "headless");
     EXPECT_EQ(tiles[1].window, (WindowConfig{.display = "", .monitor = "", .x = 1920, .y = 7}));
     EXPECT_STREQ(output_name(tiles[1]), "window");
-    EXPECT_EQ(tiles[2].window, (WindowConfig{.display = "", .monitor = "DP-1"}));
+    EXPECT_EQ(tiles[2].window, (WindowConfig{.display = "", .monitor = "", .parent = 0x1400003}));
+    EXPECT_EQ(tiles[3].window, (WindowConfig{.display = "", .monitor = "DP-1"}));
     EXPECT_EQ(config->nodes[1].tiles[0].window, (WindowConfig{.display = ":1", .monitor = ""}));
 }
 
@@ -306,7 +312,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"rect_huge", "[660, 0, 1280, 980]", "[32000, 0, 1280, 980]",
               "wall.toml:42: ", "expected [x, y, width, height]"},
         Wrong{"tile_key", "rect = [660", "size = 1\nrect = [660",
-              "wall.toml:42: ", "expected one of name, rect, output, display, monitor, position"},
+              "wall.toml:42: ", "expected one of name, rect, output, display, monitor, parent, position"},
         Wrong{"output", "rect = [0, 500, 640, 480]", "output = \"tv\"\nrect = [0, 500, 640, 480]", "wall.toml:35: ",
               "'output' is 'tv': expected \"headless\", \"window\", \"kms\", or \"kms:\" and a connector"},
         Wrong{"no_connector", "rect = [0, 500, 640, 480]", "output = \"kms:\"\nrect = [0, 500, 640, 480]",
@@ -338,6 +344,12 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"monitor_and_position", "rect = [0, 500, 640, 480]",
               "rect = [0, 500, 640, 480]\noutput = \"window\"\nmonitor = \"DP-1\"\nposition = [0, 0]",
               "wall.toml:38: ", "'position' beside 'monitor'"},
+        Wrong{"monitor_and_parent", "rect = [0, 500, 640, 480]",
+              "rect = [0, 500, 640, 480]\noutput = \"window\"\nparent = 5\nmonitor = \"DP-1\"",
+              "wall.toml:38: ", "'monitor' beside 'parent'"},
+        Wrong{"parent_of_no_window", "rect = [0, 500, 640, 480]",
+              "rect = [0, 500, 640, 480]\noutput = \"window\"\nparent = 0",
+              "wall.toml:37: ", "'parent': expected an integer from 1"},
         Wrong{"position_type", "rect = [0, 500, 640, 480]",
               "rect = [0, 500, 640, 480]\noutput = \"window\"\nposition = [1, -1]",
               "wall.toml:37: ", "'position': expected [x, y] in pixels, each from 0 to 32767"},

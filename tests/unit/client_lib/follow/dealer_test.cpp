@@ -107,7 +107,8 @@ protected:
     std::optional<Parallel> group;
     Dealer dealer{nodes, updater, true, group};
     Sight sight;
-    Followers followers{nodes, updater, hidden, dealer, sight};
+    WindowContents windows{nodes, dealer};
+    Followers followers{nodes, updater, hidden, dealer, windows, sight};
     ClientSurface surface{SurfaceId(1), {}};
     glstate::State state;
     UseStamp used;

@@ -95,7 +95,8 @@ private:
     HiddenParts hidden_{nodes_, open_};
     Sight sight_;
     Dealer dealer_{nodes_, updater_, false};
-    Followers followers_{nodes_, updater_, hidden_, dealer_, sight_};
+    WindowContents windows_{nodes_, dealer_};
+    Followers followers_{nodes_, updater_, hidden_, dealer_, windows_, sight_};
     ClientSurface surface_{SurfaceId(1), {}};
     glstate::State state_;
     glstate::Projection projection_;

@@ -84,7 +84,8 @@ protected:
     HiddenParts hidden{nodes, open};
     Dealer dealer{nodes, updater, false};
     Sight sight;
-    Followers followers{nodes, updater, hidden, dealer, sight};
+    WindowContents windows{nodes, dealer};
+    Followers followers{nodes, updater, hidden, dealer, windows, sight};
     ClientSurface surface{SurfaceId(1), {}};
     glstate::State state;
     UseStamp used;

@@ -193,11 +193,14 @@ TEST(ControlMessages, HelloIsWhatProtobufReads) {
 
 TEST(ControlMessages, SurfacesAreWhatProtobufReads) {
     proto::Envelope envelope;
-    ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(SurfaceId(3), 300, 200, "gears")));
+    ASSERT_TRUE(envelope.ParseFromString(
+        encode_surface_open(SurfaceId(3), {300, 200, "gears", NativeWindow{":7", 0x1400003}})));
     EXPECT_EQ(envelope.surface_open().surface(), 3u);
     EXPECT_EQ(envelope.surface_open().width(), 300u);
     EXPECT_EQ(envelope.surface_open().height(), 200u);
     EXPECT_EQ(envelope.surface_open().title(), "gears");
+    EXPECT_EQ(envelope.surface_open().native().display(), ":7");
+    EXPECT_EQ(envelope.surface_open().native().id(), 0x1400003u);
     ASSERT_TRUE(envelope.ParseFromString(encode_surface_resize(SurfaceId(3), 301, 201)));
     EXPECT_EQ(envelope.surface_resize().width(), 301u);
     ASSERT_TRUE(envelope.ParseFromString(encode_surface_close(SurfaceId(9))));
@@ -222,7 +225,7 @@ TEST(ControlMessages, WhatAnEarlierWalldKnewIsWhatProtobufReads) {
     EXPECT_EQ(resume.tickets(1).node(), 3u);
     EXPECT_EQ(resume.tickets(1).ticket(), std::string("\0\xff", 2));
     const Restore restore{{-5, 1, 30, 40}, {5, 6, 70, 80}, 9, std::string("n\0te", 4), {}};
-    ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(SurfaceId(3), 300, 200, "gears", restore)));
+    ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(SurfaceId(3), {300, 200, "gears", {}}, restore)));
     const auto& read = envelope.surface_open();
     EXPECT_EQ(read.title(), "gears");
     EXPECT_EQ(read.restore().drawn().x(), -5);
@@ -327,7 +330,7 @@ TEST(ControlLink, TellsEverySecondWhatWasSent) {
 
 TEST(ControlLink, PlacementsAndNodesArrive) {
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "gears", {}});
     EXPECT_EQ(linked.walld.receive().surface_open().title(), "gears");
     proto::Envelope placement, up, down;
     placement.mutable_placement()->set_surface(1);
@@ -387,7 +390,7 @@ proto::Envelope close_of(std::uint32_t surface) {
 
 TEST(ControlLink, APlacementLiesAmongTheTilesThatWalldSaidLast) {
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "gears", {}});
     proto::Envelope placement, tiles;
     placement.mutable_placement()->set_surface(1);
     tiles.mutable_tiles_changed()->add_tiles()->set_node(9);
@@ -403,7 +406,7 @@ TEST(ControlLink, APlacementLiesAmongTheTilesThatWalldSaidLast) {
 TEST(ControlLink, AWindowIsToldToRedrawAfterAMoveAndNotAfterItsOwnRequests) {
     FakeWindow window;
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "", window.messages());
+    linked.link->surface_open(SurfaceId(1), {300, 200, "", {}}, window.messages());
     linked.link->surface_resize(SurfaceId(1), 400, 200);
     linked.walld.send(framed(placement_of(1, 1)) + framed(placement_of(1, 2)));
     ASSERT_TRUE(linked.link->wait_placement(SurfaceId(1), 2s));
@@ -421,7 +424,7 @@ TEST(ControlLink, AWindowIsToldToRedrawAfterAMoveAndNotAfterItsOwnRequests) {
 
 TEST(ControlLink, AnAdoptionWaitsUntilWalldKnows) {
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "", {}});
     EXPECT_TRUE(linked.walld.receive().has_surface_open());
     EXPECT_FALSE(linked.link->surface_adopted(SurfaceId(1), 3, 12, 20ms));
     const auto said = linked.walld.receive().surface_adopted();
@@ -441,9 +444,9 @@ TEST(ControlLink, AWindowIsAskedToCloseAndWalldHearsWhenItCannotBe) {
     FakeWindow window, stubborn;
     stubborn.has_close = false;
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "", window.messages());
-    linked.link->surface_open(SurfaceId(2), 300, 200, "", stubborn.messages());
-    linked.link->surface_open(SurfaceId(3), 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "", {}}, window.messages());
+    linked.link->surface_open(SurfaceId(2), {300, 200, "", {}}, stubborn.messages());
+    linked.link->surface_open(SurfaceId(3), {300, 200, "", {}});
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(linked.walld.receive().has_surface_open());
     linked.walld.send(framed(close_of(1)) + framed(close_of(2)) + framed(close_of(3)) + framed(close_of(99)));
     EXPECT_EQ(linked.walld.receive().close_refused().surface(), 2u);
@@ -456,7 +459,7 @@ TEST(ControlLink, AResizeWaitsForItsOwnPlacement) {
     proto::Envelope placement;
     placement.mutable_placement()->set_surface(1);
     placement.mutable_placement()->set_layout_version(1);
-    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "", {}});
     linked.walld.receive();
     linked.walld.send(placement);
     ASSERT_TRUE(linked.link->wait_placement(SurfaceId(1), 2s));
@@ -473,7 +476,7 @@ TEST(ControlLink, ByteByByteIsTheSame) {
     proto::Envelope placement;
     placement.mutable_placement()->set_surface(1);
     placement.mutable_placement()->set_layout_version(9);
-    linked.link->surface_open(SurfaceId(1), 1, 1, "");
+    linked.link->surface_open(SurfaceId(1), {1, 1, "", {}});
     linked.walld.receive();
     for (const char c : framed(placement)) {
         linked.walld.send(std::string(1, c));
@@ -484,7 +487,7 @@ TEST(ControlLink, ByteByByteIsTheSame) {
 
 TEST(ControlLink, ComesBackAfterWalldWasAway) {
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "gears", {}});
     linked.walld.receive();
     linked.walld.hang_up();
     EXPECT_TRUE(collect(*linked.link, [](auto& e) { return e.lost; }).lost);
@@ -504,7 +507,7 @@ proto::Envelope move_to(const std::string& address) {
 TEST(ControlLink, GoesToAnotherWallWhenTheProgramSaysSo) {
     Linked linked;
     FakeWalld other;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "gears", {}});
     linked.walld.receive();
     proto::ClientHello hello;
     std::thread server([&] { hello = other.welcome(); });
@@ -556,7 +559,7 @@ TEST(ControlLink, TellsAnotherWallNoToken) {
 TEST(ControlLink, WhatWalldSaidBeforeItClosedIsReadThoughSomethingIsBeingWritten) {
     std::promise<void> asked, gone;
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "gears",
+    linked.link->surface_open(SurfaceId(1), {300, 200, "gears", {}},
                               {[&] {
                                    asked.set_value();
                                    gone.get_future().wait();
@@ -597,7 +600,7 @@ proto::Envelope agreed(std::uint32_t surface, std::uint32_t version) {
 
 TEST(ControlLinkOfAMember, WaitsForWhereAFrameIsDrawn) {
     Linked linked(a_members_hello());
-    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "", {}});
     linked.walld.receive();
     linked.walld.send(framed(from(placement_of(1, 1), 0, true)) + framed(from(placement_of(1, 2), 6, false)));
     const auto noted = linked.walld.receive().placement_noted();
@@ -624,7 +627,7 @@ TEST(ControlLinkOfAMember, WaitsForWhereAFrameIsDrawn) {
 TEST(ControlLinkOfAMember, ComesBackToTheNextWalldWithWhatIsAgreed) {
     Linked linked(a_members_hello());
     EXPECT_FALSE(linked.hello.has_resume());
-    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "", {}});
     linked.walld.receive();
     linked.walld.send(framed(from(placement_of(1, 1), 0, true)) + framed(from(placement_of(1, 2), 6, false)));
     linked.walld.receive();
@@ -656,7 +659,7 @@ TEST(ControlLinkOfAMember, EndsWhenItsSessionIsNoMore) {
     Linked linked(a_members_hello());
     std::promise<std::string> ended;
     linked.link->on_end([&](const std::string& why) { ended.set_value(why); });
-    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "", {}});
     linked.walld.receive();
     linked.walld.send(framed(from(placement_of(1, 1), 0, true)) + framed(from(placement_of(1, 2), 6, false)));
     linked.walld.receive();
@@ -680,7 +683,7 @@ TEST(ControlLinkOfAMember, EndsWhenItsSessionIsNoMore) {
 
 TEST(ControlLink, TellsTheNextWalldWhatThereWas) {
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "gears", {}});
     linked.walld.receive();
     auto first = placement_of(1, 1), second = placement_of(1, 2), third = placement_of(1, 3);
     second.mutable_placement()->mutable_rect()->set_x(20);
@@ -694,7 +697,7 @@ TEST(ControlLink, TellsTheNextWalldWhatThereWas) {
     collect(*linked.link, [](auto& e) { return e.placements.size() == 3 && !e.node_changes.empty(); });
     linked.link->surface_adopted(SurfaceId(1), 2, 9, 1ms);  // the third one has come since the program looked
     EXPECT_EQ(linked.walld.receive().surface_adopted().layout_version(), 2u);
-    linked.link->surface_open(SurfaceId(2), 10, 10, "placed nowhere yet");
+    linked.link->surface_open(SurfaceId(2), {10, 10, "placed nowhere yet", {}});
     linked.walld.receive();
     std::this_thread::sleep_for(50ms);  // the note is behind all that, and nobody waits for it
     linked.walld.hang_up();
@@ -715,7 +718,7 @@ TEST(ControlLink, TellsTheNextWalldWhatThereWas) {
 
 TEST(ControlLink, NobodyWaitsForASilentWalldTwice) {
     Linked linked;
-    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), {300, 200, "", {}});
     linked.walld.receive();
     EXPECT_FALSE(linked.link->wait_placement(SurfaceId(1), 10s))
         << "it has asked for a sign of life meanwhile, in vain";

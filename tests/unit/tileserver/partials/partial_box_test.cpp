@@ -44,6 +44,31 @@ TEST(ABox, DropsWhatComesTooLate) {
     EXPECT_TRUE(box.take(kSession, key_of(1)));
 }
 
+TEST(ABox, DoesNotWaitForNodesThatAreGone) {
+    PartialBox box;
+    const std::vector keys{key_of(1, 3), key_of(1, 4)};
+    ASSERT_TRUE(box.put(kSession, message_of(keys[0])));
+    EXPECT_FALSE(box.has(kSession, keys)) << "nobody has said that it is gone";
+    box.lose(kSession, NodeIndex(4));
+    EXPECT_TRUE(box.has(kSession, keys));
+    EXPECT_FALSE(box.take(kSession, keys[1]));
+    ASSERT_TRUE(box.put(kSession, message_of(key_of(2, 4)))) << "it is there again";
+    EXPECT_FALSE(box.has(kSession, keys));
+}
+
+TEST(ABox, KnowsOfNodesThatTheSessionHasNoMore) {
+    PartialBox box;
+    const std::vector keys{key_of(1, 3)};
+    box.set_nodes(kSession, {NodeIndex(2)});
+    box.set_nodes(kSession, {NodeIndex(2), NodeIndex(3)});
+    EXPECT_FALSE(box.has(kSession, keys));
+    box.set_nodes(kSession, {NodeIndex(2)});
+    EXPECT_TRUE(box.has(kSession, keys));
+    EXPECT_FALSE(box.has(SessionId(2), keys)) << "another session's";
+    box.set_nodes(kSession, {NodeIndex(2), NodeIndex(3)});
+    EXPECT_FALSE(box.has(kSession, keys)) << "it has come back";
+}
+
 TEST(ABox, RefusesWhatIsNone) {
     PartialBox box;
     EXPECT_FALSE(box.put(kSession, std::vector<std::byte>(10)));

@@ -172,7 +172,10 @@ TEST_F(TheWall, TellsNodesOfASortLastProgramOfEachOther) {
     }
     EXPECT_TRUE(welcome.nodes(0).renders());
     wall_.node_leaves(kRight, now_);
+    ASSERT_EQ(told(kLeft).nodes_size(), 1) << "at once, so that nobody waits for what it draws";
+    EXPECT_EQ(told(kLeft).nodes(0).node(), kLeft.value);
     join("right", 7);
+    ASSERT_EQ(told(kLeft).nodes_size(), 2);
     EXPECT_NE(told(kLeft).nodes(1).ticket(), welcome.nodes(1).ticket()) << "it is another process";
 }
 
