@@ -45,19 +45,24 @@ public:
     virtual Result<FrameView> decode(std::span<const std::byte> packet) = 0;
 };
 
+struct Compressor;  // packed_codec.h
+
 struct Codec {
-    std::string_view name;     ///< as in the stream
-    std::string_view summary;  ///< one line for a person
+    std::string_view name{};     ///< as in the stream
+    std::string_view summary{};  ///< one line for a person
     /// Fails for a format that the codec cannot hold. `parallel` is used by encode(), where the codec can.
-    Result<std::unique_ptr<Encoder>> (*make_encoder)(const StreamFormat& format, ParallelFor parallel);
+    std::function<Result<std::unique_ptr<Encoder>>(const StreamFormat& format, ParallelFor parallel)> make_encoder{};
     /// `header`: the encoder's stream_header(). `parallel` is used by decode(), where the codec can.
-    Result<std::unique_ptr<Decoder>> (*make_decoder)(const StreamFormat& format, std::span<const std::byte> header,
-                                                     ParallelFor parallel);
+    std::function<Result<std::unique_ptr<Decoder>>(const StreamFormat& format, std::span<const std::byte> header,
+                                                   ParallelFor parallel)>
+        make_decoder{};
+    const Compressor* compressor = nullptr;  ///< of any bytes, where the codec is no more than that
 };
 
-/// All codecs, in the order of codec_list.h.
+/// All that are built in, in the order of codec_list.h.
 std::span<const Codec* const> codecs();
-/// The codec of that name; the error lists the names that there are.
+/// The codec of that name, built in or out of a shared object (loaded_codecs.h); the error lists the names that there
+/// are.
 Result<const Codec*> find_codec(std::string_view name);
 
 Result<std::unique_ptr<Encoder>> make_encoder(std::string_view codec, const StreamFormat& format,

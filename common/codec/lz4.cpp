@@ -9,7 +9,7 @@ namespace {
 
 static_assert(kMaxPixels * 4 <= LZ4_MAX_INPUT_SIZE);
 
-constexpr Compressor kLz4{
+const Compressor kLz4{
     .bound = [](std::size_t bytes) { return static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(bytes))); },
     .compress = [](Bytes from, std::span<std::byte> out) -> Result<std::size_t> {
         const int written =
@@ -35,6 +35,6 @@ constexpr Compressor kLz4{
 }  // namespace
 
 extern const Codec codec_lz4;
-const Codec codec_lz4{"lz4", "LZ4 over the pixels", PackedCodec<kLz4>::encoder, PackedCodec<kLz4>::decoder};
+const Codec codec_lz4 = packed_codec("lz4", "LZ4 over the pixels", kLz4);
 
 }  // namespace wall::codec

@@ -7,7 +7,7 @@
 namespace wall::codec {
 namespace {
 
-constexpr Compressor kRaw{
+const Compressor kRaw{
     .bound = [](std::size_t bytes) { return bytes; },
     .compress = [](Bytes from, std::span<std::byte> out) -> Result<std::size_t> {
         std::memcpy(out.data(), from.data(), from.size());
@@ -25,6 +25,6 @@ constexpr Compressor kRaw{
 }  // namespace
 
 extern const Codec codec_raw;
-const Codec codec_raw{"raw", "pixels as they are", PackedCodec<kRaw>::encoder, PackedCodec<kRaw>::decoder};
+const Codec codec_raw = packed_codec("raw", "pixels as they are", kRaw);
 
 }  // namespace wall::codec

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "common/codec/codec.h"
+#include "common/codec/loaded_codecs.h"
 
 namespace wall::codec {
 
@@ -22,7 +23,10 @@ Result<const Codec*> find_codec(std::string_view name) {
         if (codec->name == name) return codec;
         names += (names.empty() ? "" : ", ") + std::string(codec->name);
     }
-    return fail("unknown codec '" + std::string(name.substr(0, 64)) + "'; there are: " + names);
+    auto loaded = find_loaded_codec(name);
+    if (loaded) return loaded;
+    return fail("unknown codec '" + std::string(name.substr(0, 64)) + "'; there are: " + names + " (" +
+                loaded.error().message + ")");
 }
 
 Result<std::unique_ptr<Encoder>> make_encoder(std::string_view codec, const StreamFormat& format,

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kLevel = 1;  ///< monitor streams want speed
 
-constexpr Compressor kZstd{
+const Compressor kZstd{
     .bound = [](std::size_t bytes) { return ZSTD_compressBound(bytes); },
     .compress = [](Bytes from, std::span<std::byte> out) -> Result<std::size_t> {
         const std::size_t written = ZSTD_compress(out.data(), out.size(), from.data(), from.size(), kLevel);
@@ -29,7 +29,6 @@ constexpr Compressor kZstd{
 }  // namespace
 
 extern const Codec codec_zstd;
-const Codec codec_zstd{"zstd", "Zstandard level 1 over the pixels", PackedCodec<kZstd>::encoder,
-                       PackedCodec<kZstd>::decoder};
+const Codec codec_zstd = packed_codec("zstd", "Zstandard level 1 over the pixels", kZstd);
 
 }  // namespace wall::codec

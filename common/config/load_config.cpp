@@ -101,7 +101,8 @@ TriangleOrder read_triangle_order(TreeReader& read, const toml::table& table) {
 }
 
 NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
-    read.only(table, "[[node]]", {"name", "backend", "listen", "gpus", "triangle_order", "role", "tile"});
+    read.only(table, "[[node]]",
+              {"name", "backend", "listen", "gpus", "triangle_order", "role", "partial_codec", "tile"});
     NodeConfig out;
     out.name = out.process = read.text(table, "name");
     const auto backend = read.text(table, "backend", "egl");
@@ -110,6 +111,7 @@ NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec
     else read.refuse(table.get("backend")->source(), "'backend' is '" + backend + "': expected \"egl\" or \"osmesa\"");
     out.triangle_order = read_triangle_order(read, table);
     out.roles = read_roles(read, table);
+    out.partial_codec = read.text(table, "partial_codec", out.partial_codec);
     if (const auto* listen = table.get("listen")) out.listen = read.address(*listen, "'listen'");
     else out.listen = {.path = {}, .host = "127.0.0.1", .port = net::kDefaultDataPort};
     const auto tiles = tile_tables(read, table);

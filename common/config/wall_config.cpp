@@ -27,7 +27,8 @@ bool same_screen(const TileConfig& a, const TileConfig& b) {
 bool draws_as(const NodeConfig& a, const NodeConfig& b) {
     const bool headless = std::ranges::all_of(a.tiles, is_headless) && std::ranges::all_of(b.tiles, is_headless);
     return a.name == b.name && a.process == b.process && a.part == b.part && a.backend == b.backend &&
-           a.listen == b.listen && a.triangle_order == b.triangle_order && a.roles == b.roles && a.gpu() == b.gpu() &&
+           a.listen == b.listen && a.triangle_order == b.triangle_order && a.roles == b.roles &&
+           a.partial_codec == b.partial_codec && a.gpu() == b.gpu() &&
            (headless || std::ranges::equal(a.tiles, b.tiles, same_screen));
 }
 

@@ -86,6 +86,7 @@ struct NodeConfig {
     std::uint16_t part = 0;  ///< number among the nodes of that
     TriangleOrder triangle_order = TriangleOrder::automatic;
     Roles roles{};
+    std::string partial_codec = "lz4";  ///< of what it draws for nodes of other machines
     /// That draws its tiles: it is the same for all.
     std::string gpu() const { return tiles.empty() ? "auto" : tiles.front().gpu; }
     /// Null: it has none there.

@@ -24,13 +24,14 @@ CONTROL_PORT, DATA_PORT = 7770, 7790
 
 class MachineWall(Wall):
     """`clients` have joined; `guests` are hosts that have not, for join_client(). `gpus` are how many a node draws
-    with, if several. Options that are not here are those of Wall. All ends with the thread that starts it."""
+    with, if several; `node_keys` stand in each [[node]]. Options that are not here are those of Wall. All ends with
+    the thread that starts it."""
 
     def __init__(self, tiles: tuple[int, int] = (3, 2), tile_size: tuple[int, int] = (200, 150), *,
                  clients: Sequence[str] = ("desk",), guests: Sequence[str] = (),
-                 gpus: dict[str, int] | None = None, **options):
+                 gpus: dict[str, int] | None = None, node_keys: str = "", **options):
         super().__init__(tiles, tile_size, die_with_parent=True, **options)
-        self.clients, self.gpus = clients, gpus or {}
+        self.clients, self.gpus, self.node_keys = clients, gpus or {}, node_keys
         self.hosts = Hosts(WALLD, *self.node_names, *clients, *guests)
 
     # ---- life ----
@@ -56,7 +57,7 @@ class MachineWall(Wall):
         control = [f"unix:{self.folder}/walld.sock", f"{self.hosts.address(WALLD)}:{CONTROL_PORT}"]
         nodes = "".join(f"[[node]]\nname = {quoted(name)}\nbackend = {quoted(self.backend)}\n"
                         f"listen = {quoted(self.listen_address(name))}\n"
-                        + (f"gpus = {self.gpus[name]}\n" if name in self.gpus else "")
+                        + (f"gpus = {self.gpus[name]}\n" if name in self.gpus else "") + self.node_keys + "\n"
                         + "".join(self._tile(f"{column}-{row}") for row in range(self.tiles[1]))
                         for column, name in enumerate(self.node_names))
         return (f"[wall]\nname = {quoted(self.name)}\nswap_timeout_ms = {self.swap_timeout_ms}\n"
@@ -160,12 +161,14 @@ class MachineWall(Wall):
     # ---- at a client host ----
 
     def run_at(self, client: str, *command: object, rect: tuple[int, int, int, int] | None = None, hold: bool = False,
-               parallel: int = 0, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
+               parallel: int = 0, sort_last: bool = False, env: dict[str, str] | None = None,
+               **popen) -> subprocess.Popen:
         """Starts a program there, as run() does here."""
         line = [self.client_bin / "wallrun", "--walld", self.agent_address(client)]
         line += ["--rect", ",".join(map(str, rect))] if rect else []
         line += ["--hold"] if hold else []
         line += ["--parallel", str(parallel)] if parallel else []
+        line += ["--sort-last"] if sort_last else []
         app = self.hosts.popen(client, [*line, "--", *command], env=env or self._environment,
                                preexec_fn=self._before_exec, **popen)
         self.apps.append(app)

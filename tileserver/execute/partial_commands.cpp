@@ -89,7 +89,7 @@ std::vector<std::byte> PartialCommands::take_partial(PartialLayers::One& partial
                                                      GLenum by) const {
     PixelBlock block{.area = partial.area, .top_row_first = false, .colors = {}, .depths = {}};
     if (std::exchange(partial.drawn, false)) partial.layer->read_block(block);
-    return encode_partial(key, block, PartialCodec::none,
+    return encode_partial(key, block, kNoCodec,
                           by == GL_BLEND ? PartialPlanes::colors : PartialPlanes::colors_and_depths);
 }
 

@@ -132,10 +132,13 @@ NodeServer::~NodeServer() = default;
 Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor executor, const config::WallConfig& wall,
                                                      const config::NodeConfig& node, const CompilerHost* compilers,
                                                      NodeKeys keys, Described described) {
+    if (auto good = check_partial_codec(node.partial_codec); !good)
+        return fail("'partial_codec' of node '" + node.name + "': " + good.error().message);
     const auto peers = keys.tls ? net::Peers::with_keys : net::Peers::of_this_machine;
     const auto address = keys.joined ? for_other_machines(node) : node.listen;
     std::unique_ptr<NodeServer> server(
         new NodeServer(executor, wall, node.name, std::move(keys), std::move(described)));
+    server->partial_links_.set_codec(node.partial_codec);
     auto listener = net::Listener::open(executor, address, peers);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));

@@ -39,8 +39,8 @@ std::vector<std::byte> hello_frame(SessionId session, const std::string& ticket)
 class PartialLinks::Link : public std::enable_shared_from_this<Link> {
 public:
     Link(asio::any_io_executor executor, std::shared_ptr<const tls::TlsContext> tls, SessionId session,
-         PartialPeer peer)
-        : timer_(executor), tls_(std::move(tls)), session_(session), peer_(std::move(peer)) {}
+         PartialPeer peer, std::string codec)
+        : timer_(executor), tls_(std::move(tls)), session_(session), peer_(std::move(peer)), codec_(std::move(codec)) {}
 
     void send(std::vector<std::byte> message) {
         if (queued_ + message.size() > kMostQueued) return;
@@ -101,7 +101,7 @@ private:
     }
     /// Between machines the link is what takes longest.
     std::vector<std::byte> coded(const std::vector<std::byte>& message) const {
-        return peer_.key ? recode_partial(message, PartialCodec::lz4) : message;
+        return peer_.key ? recode_partial(message, codec_) : message;
     }
     void lost(const std::string& why) {
         if (!closed_)
@@ -114,6 +114,7 @@ private:
     std::shared_ptr<const tls::TlsContext> tls_;
     const SessionId session_;
     const PartialPeer peer_;
+    const std::string codec_;
     std::optional<net::Stream> stream_;
     std::deque<std::vector<std::byte>> queue_;
     std::size_t queued_ = 0;
@@ -145,7 +146,7 @@ void PartialLinks::send(SessionId session, NodeIndex to, std::vector<std::byte> 
     const auto peer = peers_.find(key);
     if (peer == peers_.end()) return;
     auto& link = links_[key];
-    if (!link) link = std::make_shared<Link>(executor_, tls_, session, peer->second);
+    if (!link) link = std::make_shared<Link>(executor_, tls_, session, peer->second, codec_);
     link->send(std::move(message));
 }
 

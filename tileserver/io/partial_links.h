@@ -38,6 +38,8 @@ public:
 
     /// `tls`: the own key, for nodes of other machines; null: they cannot be reached.
     PartialLinks(asio::any_io_executor executor, std::shared_ptr<const tls::TlsContext> tls);
+    /// Of what goes to other machines from now on; a check_partial_codec().
+    void set_codec(std::string name) { codec_ = std::move(name); }
     ~PartialLinks();
 
     /// Links to nodes that are not there any more, or are others now, go.
@@ -52,6 +54,7 @@ private:
 
     asio::any_io_executor executor_;
     std::shared_ptr<const tls::TlsContext> tls_;
+    std::string codec_ = "lz4";
     std::map<Key, PartialPeer> peers_;
     std::map<Key, std::shared_ptr<Link>> links_;
 };

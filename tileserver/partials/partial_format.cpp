@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/partials/partial_format.h"
 
-#include <lz4.h>
-
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <numeric>
 #include <string>
 
+#include "common/codec/packed_codec.h"
 #include "common/wire/limits.h"
 
 namespace wall::tileserver {
 namespace {
 
 constexpr std::size_t kWord = sizeof(std::uint32_t);
-constexpr std::size_t kMostGrowth = 255;  // a byte of lz4 says no more
+constexpr std::size_t kMostLetters = 4;
 enum Field : std::size_t {
     surface,
     sequence,
@@ -25,7 +26,7 @@ enum Field : std::size_t {
     width,
     height,
     top_row_first,
-    codec,
+    codec_name,
     plain_bytes,
     rank,
     planes
@@ -58,6 +59,27 @@ std::vector<PixelRun> runs_of(const PixelBlock& block) {
     return runs;
 }
 
+/// A name as four letters, with blanks behind it.
+std::uint32_t letters_of(std::string_view name) {
+    std::array<char, kMostLetters> letters{' ', ' ', ' ', ' '};
+    std::ranges::copy(name.substr(0, kMostLetters), letters.begin());
+    return std::bit_cast<std::uint32_t>(letters);
+}
+
+std::string name_of(std::uint32_t word) {
+    const auto letters = std::bit_cast<std::array<char, kMostLetters>>(word);
+    std::string name(letters.begin(), letters.end());
+    name.erase(name.find_last_not_of(' ') + 1);
+    return name;
+}
+
+Result<const codec::Compressor*> compressor_of(std::string_view name) {
+    const auto found = codec::find_codec(name);
+    if (!found) return tl::unexpected(found.error());
+    if ((*found)->compressor == nullptr) return fail("'" + std::string(name) + "' codes frames, and not any bytes");
+    return (*found)->compressor;
+}
+
 /// The header of a message whose content has `plain` bytes, and room for so many coded ones.
 std::vector<std::byte> begin_message(const PartialKey& key, const PixelBlock& block, PartialPlanes what,
                                      std::size_t plain) {
@@ -74,7 +96,7 @@ std::vector<std::byte> begin_message(const PartialKey& key, const PixelBlock& bl
     set_word(out, height, static_cast<std::uint32_t>(area.height));
     set_word(out, top_row_first, block.top_row_first ? 1 : 0);
     set_word(out, planes, static_cast<std::uint32_t>(what));
-    set_word(out, codec, static_cast<std::uint32_t>(PartialCodec::none));
+    set_word(out, codec_name, letters_of(kNoCodec));
     set_word(out, plain_bytes, static_cast<std::uint32_t>(plain));
     return out;
 }
@@ -92,26 +114,21 @@ Result<std::vector<std::byte>> plain_of(std::span<const std::byte> message) {
     const auto coded = message.subspan(kPartialHeader);
     const std::size_t plain = word_at(message, plain_bytes);
     if (plain > wire::kMaxFramePayload) return tl::unexpected(wrong("larger than it may be"));
-    switch (static_cast<PartialCodec>(word_at(message, codec))) {
-        case PartialCodec::none:
-            if (coded.size() != plain) return tl::unexpected(wrong("not as long as it says"));
-            return std::vector<std::byte>(coded.begin(), coded.end());
-        case PartialCodec::lz4: {
-            if (plain > coded.size() * kMostGrowth) return tl::unexpected(wrong("its lz4 is damaged"));
-            std::vector<std::byte> out(plain);
-            const int got =
-                LZ4_decompress_safe(reinterpret_cast<const char*>(coded.data()), reinterpret_cast<char*>(out.data()),
-                                    static_cast<int>(coded.size()), static_cast<int>(plain));
-            if (got != static_cast<int>(plain)) return tl::unexpected(wrong("its lz4 is damaged"));
-            return out;
-        }
+    const std::string name = name_of(word_at(message, codec_name));
+    if (name == kNoCodec) {
+        if (coded.size() != plain) return tl::unexpected(wrong("not as long as it says"));
+        return std::vector<std::byte>(coded.begin(), coded.end());
     }
-    return tl::unexpected(wrong("its codec is not known here"));
+    const auto by = compressor_of(name);
+    if (!by) return tl::unexpected(wrong(by.error().message));
+    std::vector<std::byte> out(plain);
+    if (auto restored = (*by)->restore(coded, out); !restored) return tl::unexpected(wrong(restored.error().message));
+    return out;
 }
 
 }  // namespace
 
-std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& block, PartialCodec by,
+std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& block, std::string_view by,
                                       PartialPlanes what) {
     const std::vector<PixelRun> runs = runs_of(block);
     const std::size_t pixels = std::accumulate(runs.begin(), runs.end(), std::size_t{0},
@@ -132,27 +149,35 @@ std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& b
             at += run.take;
         }
     }
-    return by == PartialCodec::none ? out : recode_partial(out, by);
+    return by == kNoCodec ? out : recode_partial(out, by);
 }
 
-std::vector<std::byte> recode_partial(std::span<const std::byte> message, PartialCodec by) {
+std::vector<std::byte> recode_partial(std::span<const std::byte> message, std::string_view by) {
     std::vector<std::byte> out(message.begin(), message.end());
-    if (by == static_cast<PartialCodec>(word_at(message, codec))) return out;
+    if (letters_of(by) == word_at(message, codec_name)) return out;
     const auto plain = plain_of(message);
     if (!plain) return out;
-    out.resize(kPartialHeader);
-    set_word(out, codec, static_cast<std::uint32_t>(by));
-    if (by == PartialCodec::none) {
-        out.insert(out.end(), plain->begin(), plain->end());
-        return out;
+    std::vector<std::byte> coded = *plain;
+    if (by != kNoCodec) {
+        const auto compressor = compressor_of(by);
+        if (!compressor) return out;
+        coded.resize((*compressor)->bound(plain->size()));
+        const auto written = (*compressor)->compress(*plain, coded);
+        if (!written) return out;
+        coded.resize(*written);
     }
-    const int bound = LZ4_compressBound(static_cast<int>(plain->size()));
-    out.resize(kPartialHeader + static_cast<std::size_t>(bound));
-    const int bytes = LZ4_compress_default(reinterpret_cast<const char*>(plain->data()),
-                                           reinterpret_cast<char*>(out.data() + kPartialHeader),
-                                           static_cast<int>(plain->size()), bound);
-    out.resize(kPartialHeader + static_cast<std::size_t>(bytes));
+    out.resize(kPartialHeader);
+    set_word(out, codec_name, letters_of(by));
+    append(out, std::span<const std::byte>(coded));
     return out;
+}
+
+Result<void> check_partial_codec(std::string_view name) {
+    if (name == kNoCodec) return {};
+    if (name.empty() || name.size() > kMostLetters)
+        return fail("'" + std::string(name) + "': expected the name of a codec of 1 to 4 letters");
+    if (const auto found = compressor_of(name); !found) return tl::unexpected(found.error());
+    return {};
 }
 
 Result<PartialKey> key_of_partial(std::span<const std::byte> message) {
@@ -171,6 +196,8 @@ Result<Partial> decode_partial(std::span<const std::byte> message) {
         return tl::unexpected(wrong("of an area that none can have"));
     const std::uint64_t each = word_at(message, planes);
     if (each != 1 && each != 2) return tl::unexpected(wrong("of neither one plane nor two"));
+    const std::uint64_t most = 2 * kWord + std::uint64_t{columns} * rows * (sizeof(PixelRun) + each * kWord);
+    if (word_at(message, plain_bytes) > most) return tl::unexpected(wrong("larger than its area"));
     const auto plain = plain_of(message);
     if (!plain) return tl::unexpected(plain.error());
     if (plain->size() < 2 * kWord) return tl::unexpected(wrong("it has no counts"));

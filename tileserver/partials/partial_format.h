@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "common/base/ids.h"
@@ -44,10 +45,11 @@ struct PartialKey {
     auto operator<=>(const PartialKey&) const = default;
 };
 
-enum class PartialCodec : std::uint32_t {
-    none = 0x656e6f6e,  // "none"
-    lz4 = 0x20347a6c,   // "lz4 "
-};
+/// The codec that leaves all as it is.
+inline constexpr std::string_view kNoCodec = "none";
+/// Whether partial pictures may be coded by it: that, or a codec of bytes with a name of at most four letters
+/// (common/codec). An error says what is expected.
+Result<void> check_partial_codec(std::string_view name);
 
 struct PixelRun {
     std::uint32_t skip = 0, take = 0;  ///< pixels
@@ -68,11 +70,10 @@ inline constexpr std::uint32_t kMaxPartialPixels = 1u << 24;  ///< of a layer th
 enum class PartialPlanes : std::uint32_t { colors = 1, colors_and_depths };
 
 /// The pixels whose stencil value is not 0; of a block without values none.
-std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& block,
-                                      PartialCodec codec = PartialCodec::none,
+std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& block, std::string_view codec = kNoCodec,
                                       PartialPlanes planes = PartialPlanes::colors_and_depths);
-/// The same partial picture by another codec; a message that encode_partial() has made.
-std::vector<std::byte> recode_partial(std::span<const std::byte> message, PartialCodec codec);
+/// The same partial picture by another codec; a message that encode_partial() has made. As it is, if the codec cannot.
+std::vector<std::byte> recode_partial(std::span<const std::byte> message, std::string_view codec);
 /// Of foreign bytes: only what they say that they are.
 Result<PartialKey> key_of_partial(std::span<const std::byte> message);
 Result<Partial> decode_partial(std::span<const std::byte> message);

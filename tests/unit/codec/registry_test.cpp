@@ -165,8 +165,8 @@ INSTANTIATE_TEST_SUITE_P(Registry, EveryCodec, testing::ValuesIn(codecs().begin(
 TEST(Registry, KnowsItsNames) {
     for (const char* name : {"huffyuv", "huffyuv-tiles", "raw", "lz4", "zstd"})
         EXPECT_EQ((*find_codec(name))->name, name);
-    EXPECT_EQ(find_codec("mpeg").error().message,
-              "unknown codec 'mpeg'; there are: huffyuv, huffyuv-tiles, raw, lz4, zstd");
+    EXPECT_THAT(find_codec("mpeg").error().message,
+                HasSubstr("unknown codec 'mpeg'; there are: huffyuv, huffyuv-tiles, raw, lz4, zstd (there is no "));
 }
 
 TEST(Registry, RefusesAbsurdSizes) {

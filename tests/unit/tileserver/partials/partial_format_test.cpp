@@ -60,10 +60,10 @@ TEST(APartialPicture, ThatIsEmptyIsItsHeader) {
 TEST(APartialPicture, IsTheSameByEachCodec) {
     std::mt19937 random(1);
     const PixelBlock block = random_block(97, 61, 5, random);
-    const auto plain = encode_partial(kKey, block), coded = encode_partial(kKey, block, PartialCodec::lz4);
+    const auto plain = encode_partial(kKey, block), coded = encode_partial(kKey, block, "lz4");
     EXPECT_NE(plain, coded);
-    EXPECT_EQ(recode_partial(coded, PartialCodec::none), plain);
-    EXPECT_EQ(recode_partial(plain, PartialCodec::lz4), coded);
+    EXPECT_EQ(recode_partial(coded, kNoCodec), plain);
+    EXPECT_EQ(recode_partial(plain, "lz4"), coded);
     EXPECT_EQ(decoded(coded).colors, decoded(plain).colors);
     EXPECT_EQ(decoded(coded).depths, decoded(plain).depths);
 }
@@ -120,7 +120,7 @@ TEST(PartialPictures, MergedInOrderAreWhatOneNodeWouldHaveDrawn) {
 
 TEST(APartialPicture, ThatBlendsHasNoDepths) {
     const PixelBlock block = block_of(3, 1, {0x80402010, 2, 0xff030303}, {drawn(7), kUndrawn, drawn(9)});
-    const auto message = encode_partial(kKey, block, PartialCodec::none, PartialPlanes::colors);
+    const auto message = encode_partial(kKey, block, kNoCodec, PartialPlanes::colors);
     EXPECT_EQ(encode_partial(kKey, block).size() - message.size(), 2 * sizeof(std::uint32_t));
     const Partial partial = decoded(message);
     EXPECT_THAT(partial.colors, ElementsAre(0x80402010, 0xff030303));
@@ -203,12 +203,32 @@ TEST(APartialPicture, ThatIsDamagedIsRefused) {
     EXPECT_THAT(error_of(with(7, 1u << 30)), HasSubstr("area"));
     EXPECT_THAT(error_of(with(4, 0x7fffffff)), HasSubstr("area")) << "it would end beyond all numbers";
     EXPECT_THAT(error_of(with(5, static_cast<std::uint32_t>(-1))), HasSubstr("area"));
-    EXPECT_THAT(error_of(with(9, 0x20707a67)), HasSubstr("codec is not known"));
-    EXPECT_THAT(error_of(with(9, static_cast<std::uint32_t>(PartialCodec::lz4))), HasSubstr("damaged"));
+    EXPECT_THAT(error_of(with(9, 0x20707a67)), HasSubstr("unknown codec 'gzp'"));
+    EXPECT_THAT(error_of(with(9, 0x66666668)), HasSubstr("unknown codec"));
+    EXPECT_THAT(error_of(with(9, 0x20347a6c)), HasSubstr("lz4: packet"));
     EXPECT_THAT(error_of(with(10, 0xffffffff)), HasSubstr("larger"));
     EXPECT_THAT(error_of(with(13, 7)), HasSubstr("counts"));
     EXPECT_THAT(error_of(with(15, 1)), HasSubstr("lead out")) << "a pixel is skipped that is not there";
     EXPECT_THAT(error_of(with(16, 1)), HasSubstr("not those"));
+}
+
+TEST(APartialPicture, IsCodedByACodecOfAnyBytes) {
+    EXPECT_TRUE(check_partial_codec("none"));
+    EXPECT_TRUE(check_partial_codec("lz4"));
+    EXPECT_TRUE(check_partial_codec("zstd"));
+    EXPECT_THAT(check_partial_codec("huffyuv").error().message, HasSubstr("1 to 4 letters"));
+    EXPECT_THAT(check_partial_codec("").error().message, HasSubstr("1 to 4 letters"));
+    EXPECT_THAT(check_partial_codec("nope").error().message, HasSubstr("unknown codec 'nope'"));
+    const auto plain = encode_partial(kKey, {{0, 0, 2, 1}, false, {7, 8}, {1, 1}});
+    EXPECT_EQ(recode_partial(plain, "nope"), plain) << "as it is";
+    for (const char* name : {"lz4", "zstd", "raw"}) {
+        const auto coded = recode_partial(plain, name);
+        EXPECT_NE(coded, plain);
+        const auto partial = decode_partial(coded);
+        ASSERT_TRUE(partial) << partial.error().message;
+        EXPECT_EQ(partial->colors, (std::vector<std::uint32_t>{7, 8}));
+        EXPECT_EQ(recode_partial(coded, kNoCodec), plain);
+    }
 }
 
 }  // namespace
