@@ -53,6 +53,11 @@ bool contains(const geom::Rect& outer, const geom::Rect& inner) { return geom::i
 
 }  // namespace
 
+ContextId WindowContents::context() {
+    if (!context_) context_ = next_context_id();
+    return *context_;
+}
+
 bool WindowContents::read_part(Node& node, ContextId context, const DrawTarget& target, std::uint32_t slot,
                                WindowPart& part) {
     const auto ask = [&](const ImageFormat& format) {
@@ -76,7 +81,7 @@ bool WindowContents::read_part(Node& node, ContextId context, const DrawTarget& 
 /// Of the nodes that have it. What several show is read of the first.
 std::vector<WindowPart> WindowContents::read(const DrawTarget& target) {
     std::vector<WindowPart> out;
-    const ContextId context = next_context_id();
+    const ContextId context = this->context();
     const geom::Rect window{0, 0, static_cast<std::int32_t>(target.size().width),
                             static_cast<std::int32_t>(target.size().height)};
     for (const TargetLayer& layer : target.layers()) {
@@ -96,7 +101,7 @@ std::vector<WindowPart> WindowContents::read(const DrawTarget& target) {
 
 void WindowContents::draw(Node& node, const DrawTarget& target, const std::vector<WindowPart>& parts) {
     const std::uint64_t slots = plain_slots(target, node.index);
-    const ContextId context = next_context_id();
+    const ContextId context = this->context();
     const SurfaceFormat& format = target.format();
     wire::PackBuffer& buffer = nodes_.batch(node, context);
     target.bind_to(node);

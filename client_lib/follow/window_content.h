@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -53,8 +54,12 @@ private:
     bool read_part(Node& node, ContextId context, const DrawTarget& target, std::uint32_t slot, WindowPart& part);
     void draw(Node& node, const DrawTarget& target, const std::vector<WindowPart>& parts);
 
+    /// One of its own, empty whenever it is used; nodes keep room for each that there ever was.
+    ContextId context();
+
     Nodes& nodes_;
     Dealer& dealer_;
+    std::optional<ContextId> context_;
     std::unordered_map<SurfaceId, std::vector<WindowPart>> kept_;
 };
 

@@ -40,14 +40,15 @@ protected:
         surface.content_wanted = true;
         nodes[kShowing].surfaces[surface.id] = surface.layout.version;
     }
-    /// The node is asked for colours and for depths, as the session's first two questions.
-    static void answer(FakeNode& node) {
-        for (std::uint32_t number : {1u, 2u}) {
+    /// The node is asked for colours and for depths, as the session's next two questions.
+    void answer(FakeNode& node) {
+        for (const std::uint32_t number : {asked_ + 1, asked_ + 2}) {
             EXPECT_TRUE(node.receives(Op::ReadPixels));
             std::string text(sizeof number, '\0');
             std::memcpy(text.data(), &number, sizeof number);
-            node.send(FrameKind::reply, text + std::string(kPlaneBytes, number == 1 ? 'c' : 'd'));
+            node.send(FrameKind::reply, text + std::string(kPlaneBytes, number % 2 == 1 ? 'c' : 'd'));
         }
+        asked_ += 2;
     }
     /// Whether an image was drawn from these bytes.
     static bool draws(const FakeNode::Frame& frame, char of) {
@@ -61,6 +62,7 @@ protected:
         node_side.join();
     }
 
+    std::uint32_t asked_ = 0;
     FakeNode shows{"shows_a_window"}, records{"records_a_window"};
     Nodes nodes{{[](Node&) {}, [] {}, [] {}, [] {}}};
     NodeUpdater updater{nodes};
@@ -78,6 +80,17 @@ TEST_F(WindowContent, GoesToWhoRecordsBeforeItIsDrawnOver) {
     EXPECT_FALSE(surface.content_wanted);
     EXPECT_TRUE(nodes[kRecording].surfaces.contains(surface.id));
     EXPECT_TRUE(nodes[kShowing].batch.commands() <= 1) << "but for the end of the context that has read it";
+}
+
+TEST_F(WindowContent, IsReadAndDrawnByOneContextHoweverOftenItIsWanted) {
+    while_it_answers([&] { windows.bring(target); });
+    const ContextId context = nodes[kShowing].batch_context;
+    nodes[kShowing].batch.clear();
+    nodes[kRecording].surfaces.clear();
+    surface.content_wanted = true;
+    while_it_answers([&] { windows.bring(target); });
+    EXPECT_EQ(nodes[kShowing].batch_context, context) << "nodes have room for so many";
+    EXPECT_EQ(nodes[kRecording].batch_context, context);
 }
 
 TEST_F(WindowContent, IsNotAskedForBeforeAClearOfAll) {
