@@ -25,7 +25,7 @@ bool counts_or_captures(const glstate::State& state) {
     return el::occlusion_query::ref(state) != 0 || el::capture::ref(state) != 0 || glstate::counts_primitives(state);
 }
 
-/// What a pixel's color is multiplied by depends on nothing that was there before.
+/// What a pixel's colour is multiplied by depends on what was there before, or on a second colour of a shader.
 bool knows_what_is_there(std::uint32_t source_factor) {
     return source_factor == GL_DST_COLOR || source_factor == GL_ONE_MINUS_DST_COLOR || source_factor == GL_DST_ALPHA ||
            source_factor == GL_ONE_MINUS_DST_ALPHA || source_factor == GL_SRC_ALPHA_SATURATE ||

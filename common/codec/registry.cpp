@@ -18,13 +18,12 @@ std::span<const Codec* const> codecs() {
 }
 
 Result<const Codec*> find_codec(std::string_view name) {
-    std::string names;
-    for (const Codec* codec : codecs()) {
+    for (const Codec* codec : codecs())
         if (codec->name == name) return codec;
-        names += (names.empty() ? "" : ", ") + std::string(codec->name);
-    }
     auto loaded = find_loaded_codec(name);
     if (loaded) return loaded;
+    std::string names;
+    for (const Codec* codec : codecs()) names += (names.empty() ? "" : ", ") + std::string(codec->name);
     return fail("unknown codec '" + std::string(name.substr(0, 64)) + "'; there are: " + names + " (" +
                 loaded.error().message + ")");
 }

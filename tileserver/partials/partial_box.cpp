@@ -53,7 +53,7 @@ void PartialBox::close(SessionId session, SurfaceId surface, std::uint32_t rank,
 
 void PartialBox::lose(SessionId session, NodeIndex from) {
     const std::lock_guard lock(mutex_);
-    sessions_[session].gone.insert(from);
+    if (const auto its = sessions_.find(session); its != sessions_.end()) its->second.gone.insert(from);
 }
 
 void PartialBox::set_nodes(SessionId session, std::set<NodeIndex> nodes) {

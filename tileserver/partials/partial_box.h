@@ -33,7 +33,8 @@ public:
     /// The window's partial pictures up to that sequence, of that process, are not waited for any more.
     void close(SessionId session, SurfaceId surface, std::uint32_t rank, std::uint32_t sequence);
     void forget(SessionId session);
-    /// The node's connection has ended, or walld misses it. It is there again when something comes from it.
+    /// The node's connection has ended. It is there again when something comes from it. Nothing, if the session has
+    /// ended before.
     void lose(SessionId session, NodeIndex from);
     /// The nodes that the session has: those that it had before, and not now, are gone.
     void set_nodes(SessionId session, std::set<NodeIndex> nodes);

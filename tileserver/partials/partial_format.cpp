@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "common/codec/packed_codec.h"
 #include "common/wire/limits.h"
@@ -153,22 +154,21 @@ std::vector<std::byte> encode_partial(const PartialKey& key, const PixelBlock& b
 }
 
 std::vector<std::byte> recode_partial(std::span<const std::byte> message, std::string_view by) {
-    std::vector<std::byte> out(message.begin(), message.end());
-    if (letters_of(by) == word_at(message, codec_name)) return out;
-    const auto plain = plain_of(message);
-    if (!plain) return out;
-    std::vector<std::byte> coded = *plain;
+    const auto as_it_is = [&] { return std::vector<std::byte>(message.begin(), message.end()); };
+    if (letters_of(by) == word_at(message, codec_name)) return as_it_is();
+    auto coded = plain_of(message);
+    if (!coded) return as_it_is();
     if (by != kNoCodec) {
         const auto compressor = compressor_of(by);
-        if (!compressor) return out;
-        coded.resize((*compressor)->bound(plain->size()));
-        const auto written = (*compressor)->compress(*plain, coded);
-        if (!written) return out;
-        coded.resize(*written);
+        if (!compressor) return as_it_is();
+        const auto plain = std::exchange(*coded, std::vector<std::byte>((*compressor)->bound(coded->size())));
+        const auto written = (*compressor)->compress(plain, *coded);
+        if (!written) return as_it_is();
+        coded->resize(*written);
     }
-    out.resize(kPartialHeader);
+    std::vector<std::byte> out(message.begin(), message.begin() + kPartialHeader);
     set_word(out, codec_name, letters_of(by));
-    append(out, std::span<const std::byte>(coded));
+    append(out, std::span<const std::byte>(*coded));
     return out;
 }
 
@@ -232,9 +232,9 @@ Result<Partial> decode_partial(std::span<const std::byte> message) {
 
 namespace {
 
-/// Those of a run of pixels, one after the other: `at(theirs, ours, count)`, by their places.
-template <class At>
-void for_each_run(const Partial& partial, const PixelBlock& into, At&& each) {
+/// Stretches of pixels that lie in a row in both: `each(theirs, ours, count)`, where they begin.
+template <class Each>
+void for_each_run(const Partial& partial, const PixelBlock& into, Each&& each) {
     const auto columns = static_cast<std::size_t>(partial.area.width),
                rows = static_cast<std::size_t>(partial.area.height);
     const bool upside_down = partial.top_row_first != into.top_row_first;
@@ -268,7 +268,7 @@ void merge_by_depth(const Partial& partial, PixelBlock& into, const Nearer& near
     });
 }
 
-/// Four bytes each; `value` / 255, rounded to the nearest, for products of two bytes.
+/// Channel by channel theirs + ours * (255 - their alpha) / 255, rounded to the nearest.
 std::uint32_t over(std::uint32_t theirs, std::uint32_t ours) {
     const std::uint32_t through = 255 - (theirs >> 24);
     std::uint32_t out = 0;

@@ -178,14 +178,20 @@ Outcome<Answer> take(const request::Walld& walld, const Take& options) {
     watch_for_interrupts();
     if (auto moved = move(walld, options.session, own->walld()); !moved) return tl::unexpected(moved.error());
     Taken taken(std::move(*own), session->json.at("pid"), windows);
-    if (auto begun = taken.begin(); !begun) return tl::unexpected(begun.error());
-    if (options.progress) std::cerr << "It is in its own window now. Ctrl-C puts it back on the wall.\n";
     const auto begin = Clock::now();
     const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+    /// The program is not lost with its own wall.
+    const auto give_back = [&](const request::Failure& why) -> Outcome<Answer> {
+        const auto back = taken.go_back(walld);
+        if (!back) return tl::unexpected(why);
+        return Answer{{{"session", *back}, {"seconds", seconds()}, {"ended", why.message}}, {}};
+    };
+    if (auto begun = taken.begin(); !begun) return give_back(begun.error());
+    if (options.progress) std::cerr << "It is in its own window now. Ctrl-C puts it back on the wall.\n";
     std::size_t answered = 0;  // times that it was to go back, and could not
     for (;; std::this_thread::sleep_for(kEach)) {
         const auto goes_on = taken.look();
-        if (!goes_on) return tl::unexpected(goes_on.error());
+        if (!goes_on) return give_back(goes_on.error());
         if (!*goes_on)
             return Answer{{{"session", nullptr}, {"seconds", seconds()}, {"ended", "the program has ended"}}, {}};
         const bool over = options.seconds > 0 && seconds() >= options.seconds;

@@ -114,7 +114,6 @@ class ProgramsThatAreDealt(unittest.TestCase):
                 wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
                 self.assertEqual(self.partials(wall, session)["missed"], 0)
 
-
     def blended(self, wall: PlannedWall, ranks: int, *more: object) -> int:
         """The session of so many processes, each with a slab of the volume."""
         line = wall.wallrun(*BLENDED, *more, rect=(13, 9, 600, 400), hold=True, sort_last=True, parallel=ranks)

@@ -3,6 +3,7 @@
 """Programs off the wall and in their own X windows while they run, and back (`wallctl take`): what is seen there is the
 picture that was on the wall."""
 import json
+import os
 import re
 import signal
 import subprocess
@@ -149,6 +150,20 @@ class Takes(unittest.TestCase):
         app, session = self.start("drawn_once")
         self.assertEqual(Taken(self.wall, session, self.x, "--seconds", 1).end(ask=False)["ended"], "time")
         self.wall.wait_session(app)
+
+    def test_it_comes_back_when_nobody_draws_in_its_window(self) -> None:
+        app, session = self.start("frame_clock")
+        taken = Taken(self.wall, session, self.x)
+        end = time.monotonic() + SOON
+        while self.wall.sessions():
+            self.assertLess(time.monotonic(), end, "it does not leave the wall")
+            time.sleep(0.1)
+        children = Path(f"/proc/{taken.process.pid}/task/{taken.process.pid}/children").read_text().split()
+        [node] = [pid for pid in map(int, children) if Path(f"/proc/{pid}/comm").read_text().strip() == "tileserver"]
+        os.kill(node, signal.SIGKILL)
+        self.assertIn("tileserver has ended", taken.end(ask=False)["ended"])
+        session = self.wall.wait_session(app)
+        self.wall.wait(session, self.wall.wait(session, 1) + 5)
 
     def test_a_wall_that_is_gone_does_not_get_it(self) -> None:
         app, session = self.start("drawn_once")

@@ -56,6 +56,14 @@ TEST(ABox, DoesNotWaitForNodesThatAreGone) {
     EXPECT_FALSE(box.has(kSession, keys));
 }
 
+TEST(ABox, LosesNothingForASessionThatHasEnded) {
+    PartialBox box;
+    ASSERT_TRUE(box.put(kSession, message_of(key_of(1, 3))));
+    box.forget(kSession);
+    box.lose(kSession, NodeIndex(3));
+    EXPECT_FALSE(box.has(kSession, std::vector{key_of(1, 3)})) << "a later one of that number waits for it";
+}
+
 TEST(ABox, KnowsOfNodesThatTheSessionHasNoMore) {
     PartialBox box;
     const std::vector keys{key_of(1, 3)};
