@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Codec `raw`: the pixels as they are.
-#include <cstring>
+#include <algorithm>
 
 #include "common/codec/packed_codec.h"
 
@@ -10,14 +10,14 @@ namespace {
 const Compressor kRaw{
     .bound = [](std::size_t bytes) { return bytes; },
     .compress = [](Bytes from, std::span<std::byte> out) -> Result<std::size_t> {
-        std::memcpy(out.data(), from.data(), from.size());
+        std::ranges::copy(from, out.begin());
         return from.size();
     },
     .restore = [](Bytes packet, std::span<std::byte> out) -> Result<void> {
         if (packet.size() != out.size())
             return fail("raw: packet of " + std::to_string(packet.size()) + " bytes; expected " +
                         std::to_string(out.size()));
-        std::memcpy(out.data(), packet.data(), out.size());
+        std::ranges::copy(packet, out.begin());
         return {};
     },
 };

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/codec/packed_codec.h"
 #include "common/codec/worker_pool.h"
 #include "tests/unit/codec/test_pictures.h"
 
@@ -39,6 +40,18 @@ void expect_same(const std::string& codec, const StreamFormat& format, const std
         ASSERT_EQ(view->layout, format.layout);
         ASSERT_EQ(test::bytes_of(*view), test::bytes_of(picture.view()));
     }
+}
+
+// A partial picture of nothing has no bytes, and no bytes have no address.
+TEST_P(EveryCodec, GivesBackNothing) {
+    const Compressor* const compressor = GetParam()->compressor;
+    if (compressor == nullptr) return;
+    std::vector<std::byte> packet(compressor->bound(0));
+    const auto written = compressor->compress({}, packet);
+    ASSERT_TRUE(written) << written.error().message;
+    EXPECT_TRUE(compressor->restore(std::span(packet).first(*written), {}));
+    std::array<std::byte, 1> one{};
+    EXPECT_FALSE(compressor->restore(std::span(packet).first(*written), one));
 }
 
 TEST_P(EveryCodec, GivesBackEveryPicture) {
