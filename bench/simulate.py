@@ -4,8 +4,9 @@
 nodes that draw nothing), what that costs this machine's processors (measured on walls of one to four nodes), and how
 fast a wall would be that has so many machines and links of such a rate (docs/simulation.md).
 
-simulate.py [--check-only] [--json FILE] [--pictures FOLDER]
-    checked first: walls of 2, 4 and 8 nodes in network namespaces, foretold and measured
+simulate.py [--part NAME]... [--json FILE] [--pictures FOLDER]
+    check: walls of 2, 4 and 8 nodes in network namespaces, foretold and measured; scaled: March on 1x1 to 8x4 tiles,
+    both in one figure; grown: walls of up to 32x32; parallel: beside AnyGL's figure 11; many: 10,000 tiles
     exit code 1 if one of these is more than 15 % off, or a wall of 10,000 tiles takes over 60 s of computing
 Needs root, for network namespaces.
 """
@@ -34,6 +35,10 @@ OFF = 0.15  # at most
 ROUNDS = 3  # of what is measured; the median counts
 CHECKED_NODES = (2, 4, 8)
 CHECKED_MEGABITS = {"atlantis": (10, 20, 0), "march": (20, 100, 0), "buffers": (100, 0)}
+SCALED = {1: (1, 1), 2: (2, 1), 4: (2, 2), 8: (4, 2), 16: (4, 4), 32: (8, 4)}  # tiles
+MOST_HOSTS = 8  # of nodes that this machine can have
+SCALED_MEGABITS = 100
+WIREGL = 0.81  # W4.2: of 32 tiles of March, by what one takes
 SIDES = (1, 2, 4, 8, 16, 32)  # tiles, of square walls
 MEGABITS = (100, 1_000, 10_000, 100_000)
 PROCESSES = (1, 2, 4, 8, 16, 32)
@@ -53,11 +58,32 @@ def check(of: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dic
             counted = count(subject, (nodes, 1), folder, x)
             for megabits in CHECKED_MEGABITS[subject.name]:
                 foretold = scenes.rate(scenes.on_one_machine(counted, known, megabits))
-                seen = statistics.median(measure(subject, nodes, megabits, x).frames_per_second for _ in range(ROUNDS))
+                seen = statistics.median(measure(subject, (nodes, 1), megabits, x).frames_per_second
+                                         for _ in range(ROUNDS))
                 rows.append({"program": subject.name, "nodes": nodes, "megabits": megabits, "foretold": foretold,
                              "measured": seen, "ratio": foretold / seen})
                 print(f"{subject.name:10}{nodes:6}{megabits or 'any':>8}{foretold:10.2f}{seen:10.2f}"
                       f"{foretold / seen:8.3f}", flush=True)
+    return rows
+
+
+def scaled(of: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dict]:
+    """W4.2's figure of March: measured on walls that this machine can have, foretold for all."""
+    subject = next(s for s in of if s.name == "march")
+    print(f"\nmarch at {SCALED_MEGABITS} Mbit/s, frames a second: on this machine, measured and foretold, and foretold "
+          f"with a machine for each tile")
+    print(f"{'tiles':10}{'measured':>10}{'foretold':>10}{'machines':>10}{'of 1x1':>8}")
+    rows: list[dict] = []
+    for nodes, tiles in SCALED.items():
+        counted = count(subject, tiles, folder, x)
+        seen = (statistics.median(measure(subject, tiles, SCALED_MEGABITS, x).frames_per_second for _ in range(ROUNDS))
+                if nodes <= MOST_HOSTS else None)
+        rows.append({"tiles": f"{tiles[0]}x{tiles[1]}", "nodes": nodes, "measured": seen, "bytes": counted.bytes,
+                     "foretold": scenes.rate(scenes.on_one_machine(counted, known, SCALED_MEGABITS)),
+                     "machines": scenes.rate(scenes.on_machines(counted, known, SCALED_MEGABITS))})
+        row = rows[-1]
+        print(f"{row['tiles']:10}{row['measured'] or 0:10.2f}{row['foretold']:10.2f}{row['machines']:10.2f}"
+              f"{row['machines'] / rows[0]['machines']:8.3f}", flush=True)
     return rows
 
 
@@ -78,7 +104,7 @@ def grown(of: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dic
     return rows
 
 
-def parallel(known: Costs, folder: Path, x: XServer) -> list[dict]:
+def parallel(_: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dict]:
     """A7.4, figure 11: G processes and R render nodes on 100 Mbit/s."""
     subject = large_march()
     known = dataclasses.replace(known, draw=known.draw | {subject.name: known.draw["march"]})
@@ -118,24 +144,50 @@ def many(of: list[Subject], known: Costs, folder: Path, x: XServer) -> dict:
     return row
 
 
+PARTS = {"check": check, "scaled": scaled, "grown": grown, "parallel": parallel, "many": many}
+
+
+def picture_of_scaled(rows: list[dict]) -> str:
+    first = rows[0]["machines"]
+    lines = [Line("foretold, a machine each", [(row["nodes"], row["machines"]) for row in rows]),
+             Line("foretold, here", [(row["nodes"], row["foretold"]) for row in rows]),
+             Line("measured, here", [(row["nodes"], row["measured"]) for row in rows if row["measured"]]),
+             Line("WireGL's share", [(1, first), (rows[-1]["nodes"], WIREGL * first)])]
+    return chart(f"march, {SCALED_MEGABITS} Mbit/s: measured, and foretold", "tiles", "frames a second", lines,
+                 {row["nodes"]: row["tiles"] for row in rows})
+
+
 def pictures(folder: Path, results: dict) -> None:
-    for name in {row["program"] for row in results["grown"]}:
-        own = [row for row in results["grown"] if row["program"] == name]
+    if "scaled" in results:
+        save(folder / "simulated-scaling.svg", picture_of_scaled(results["scaled"]))
+    if "grown" in results:
+        pictures_of_grown(folder, results["grown"])
+    if "parallel" in results:
+        save(folder / "simulated-parallel.svg", picture_of_parallel(results["parallel"]))
+
+
+def pictures_of_grown(folder: Path, rows: list[dict]) -> None:
+    for name in {row["program"] for row in rows}:
+        own = [row for row in rows if row["program"] == name]
         lines = [Line(f"{megabits:,} Mbit/s", [(row["side"]**2, row["rates"][megabits]) for row in own])
                  for megabits in MEGABITS]
         save(folder / f"simulated-{name}.svg",
              chart(f"{name}: a machine for each tile", "tiles", "frames a second", lines,
                    {row["side"]**2: f"{row['side']}x{row['side']}" for row in own}))
+
+
+def picture_of_parallel(rows: list[dict]) -> str:
     lines = [Line(f"{nodes} node{'s' if nodes > 1 else ''}",
-                  [(row["processes"], row["frames_per_second"]) for row in results["parallel"]
-                   if row["nodes"] == nodes]) for nodes in PROCESSES]
-    save(folder / "simulated-parallel.svg",
-         chart("march, 61,000 triangles a frame, 100 Mbit/s", "processes", "frames a second", lines,
-               {ranks: str(ranks) for ranks in PROCESSES}))
+                  [(row["processes"], row["frames_per_second"]) for row in rows if row["nodes"] == nodes])
+             for nodes in PROCESSES]
+    return chart("march, 61,000 triangles a frame, 100 Mbit/s", "processes", "frames a second", lines,
+                 {ranks: str(ranks) for ranks in PROCESSES})
 
 
 def judge(results: dict) -> bool:
-    off = max(abs(row["ratio"] - 1) for row in results["check"] if row["megabits"])
+    ratios = [row["ratio"] for row in results.get("check", []) if row["megabits"]]
+    ratios += [row["foretold"] / row["measured"] for row in results.get("scaled", []) if row["measured"]]
+    off = max((abs(ratio - 1) for ratio in ratios), default=0.0)
     print(f"\nforetold and measured differ by at most {100 * off:.1f} % where links have a rate, at most "
           f"{100 * OFF:.0f} % wanted")
     good = off <= OFF
@@ -148,7 +200,7 @@ def judge(results: dict) -> bool:
 
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    arguments.add_argument("--check-only", action="store_true", help="only walls that this machine can have")
+    arguments.add_argument("--part", action="append", choices=PARTS, help="only these")
     arguments.add_argument("--json", type=Path)
     arguments.add_argument("--pictures", type=Path, help="where charts go, as SVG")
     options = arguments.parse_args()
@@ -163,13 +215,10 @@ def main() -> int:
         for name, cost in known.draw.items():
             print(f"{name}: {cost.vertex * 1e9:.0f} ns a vertex and {cost.frame * 1e3:.2f} ms a frame of a node; two "
                   f"nodes here keep {known.processors[name]:.2f} processors busy")
-        results["check"] = check(of, known, folder, x)
-        if not options.check_only:
-            results["grown"] = grown(of, known, folder, x)
-            results["parallel"] = parallel(known, folder, x)
-            results["many"] = many(of, known, folder, x)
-            if options.pictures:
-                pictures(options.pictures, results)
+        for part in options.part or PARTS:
+            results[part] = PARTS[part](of, known, folder, x)
+        if options.pictures:
+            pictures(options.pictures, results)
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n")
     return 0 if judge(results) else 1

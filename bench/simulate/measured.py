@@ -41,9 +41,9 @@ class StatusLink:
         return json.loads(self.connection.getresponse().read())
 
 
-def measure(subject: Subject, nodes: int, megabits: int, x: XServer) -> Rates:
+def measure(subject: Subject, tiles: tuple[int, int], megabits: int, x: XServer) -> Rates:
     """`megabits`: a second, to and from each host; 0: no limit."""
-    with MachineWall((nodes, 1), TILE, clients=[DESK], name="measure", swap_timeout_ms=NO_LIMIT_MS,
+    with MachineWall(tiles, TILE, clients=[DESK], name="measure", swap_timeout_ms=NO_LIMIT_MS,
                      environment=ONE_THREAD) as wall:
         for host in (DESK, *wall.node_names) if megabits else ():
             wall.hosts.limit(host, f"{megabits}mbit")

@@ -104,6 +104,7 @@ void BlockSender::send_to(Node& node, std::uint64_t slots, bool dealt) {
     pack_leading(node, buffer, leading);
     buffer.append(packer_, {}, packer_.mark());
     end_block(buffer, block);
+    note_packed(node, block.start, buffer.mark());
     count(node, NodeCounter::geometry_bytes, buffer.bytes() - before);
     count(node, NodeCounter::blocks, 1);
 }
@@ -274,7 +275,12 @@ void BlockSender::open_block(Share& share, std::uint64_t mask) {
 void BlockSender::close_block(Share& share) {
     if (share.mask == 0) return;
     end_block(*share.buffer, share.block);
+    note_packed(*share.node, share.block.start, share.buffer->mark());
     share.mask = 0;
+}
+
+void BlockSender::note_packed(const Node& node, wire::PackMark first, wire::PackMark last) const {
+    if (scratch_.packed != nullptr) scratch_.packed->push_back({node.index, node.batches, first, last});
 }
 
 void BlockSender::pack_attributes(Share& share, const AttributePlaces& wanted) {

@@ -42,16 +42,24 @@ struct NodeShare {
     std::uint64_t run_mask = 0;
 };
 
+/// Commands of a block in a node's batch.
+struct PackedPart {
+    NodeIndex node;
+    std::uint64_t batch = 0;  ///< Node::batches
+    wire::PackMark first, last;
+};
+
 /// What sorting writes into, kept by whoever sends blocks from block to block, so that no triangle asks for memory.
 /// Guarded by the session's mutex.
 struct SortScratch {
-    std::vector<NodeShare> shares;        ///< by node
-    NodeMasks touched;                    ///< by a primitive
-    NodeMasks touched_part;               ///< by a triangle of it
-    std::vector<TargetLayer> candidates;  ///< that a primitive's triangles may touch
-    VertexScan vertices;                  ///< of the primitive being divided
-    Sight sight;                          ///< of the block
-    IdealTraffic ideal;                   ///< unused without WALLGL_IDEAL
+    std::vector<NodeShare> shares;              ///< by node
+    NodeMasks touched;                          ///< by a primitive
+    NodeMasks touched_part;                     ///< by a triangle of it
+    std::vector<TargetLayer> candidates;        ///< that a primitive's triangles may touch
+    VertexScan vertices;                        ///< of the primitive being divided
+    Sight sight;                                ///< of the block
+    IdealTraffic ideal;                         ///< unused without WALLGL_IDEAL
+    std::vector<PackedPart>* packed = nullptr;  ///< if somebody wants to know where they went
 };
 
 class BlockSender {
@@ -87,6 +95,7 @@ private:
     void pack_current(Node& node, wire::PackBuffer& buffer, Attribute attribute) const;
     void open_block(Share& share, std::uint64_t mask);
     void close_block(Share& share);
+    void note_packed(const Node& node, wire::PackMark first, wire::PackMark last) const;
     void pack_attributes(Share& share, const AttributePlaces& wanted);
     void restore_attribute(Share& share, Attribute attribute);
     void begin_part(Share& share, const Primitive& primitive);

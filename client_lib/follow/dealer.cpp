@@ -16,6 +16,7 @@ namespace {
 
 /// Of a window; so many a node reads back and sends.
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 24;
+constexpr double kWaits = 0.5;  ///< share of its time that a program waits for nodes whose drawing holds it up
 
 }  // namespace
 
@@ -25,8 +26,8 @@ bool Dealer::may_deal(const ClientSurface& surface) const {
     const bool plain = format.double_buffered && format.depth_bits != 0 && format.samples == 0 && !format.stereo;
     const bool as_it_is = layout.rect.width == static_cast<int>(layout.width) &&
                           layout.rect.height == static_cast<int>(layout.height) && layout.views.empty();
-    return wanted_ && !options().broadcast && surface.options.visible && !surface.whole && plain && as_it_is &&
-           std::uint64_t{layout.width} * layout.height <= kMostPixels;
+    return (wanted_ || (measured_ && faster_.other())) && !options().broadcast && surface.options.visible &&
+           !surface.whole && plain && as_it_is && std::uint64_t{layout.width} * layout.height <= kMostPixels;
 }
 
 /// One program's blending is left alone: by each part that is rounded by itself its picture would become another one.
@@ -214,6 +215,21 @@ void Dealer::take_held_semaphores() {
             nodes_.send(*node);
         }
     }
+}
+
+// Where the program does not wait for nodes they could draw faster for nobody. Whether dealing still pays is asked
+// again and again: what is drawn, and where, is another thing by then.
+void Dealer::note_frame(MeasuredChoice::Time now, MeasuredChoice::Clock::duration waited) {
+    if (wanted_ || !measured_) return;
+    const auto renders = std::ranges::count_if(
+        nodes_, [](const auto& node) { return node->info.renders && node->answers() && !node->slow; });
+    faster_.done(
+        1, faster_.other(), now,
+        [&](double seconds) {
+            const double share = std::chrono::duration<double>(waited - waited_before_).count() / seconds;
+            return MeasuredChoice::Seen{.usual_in_doubt = renders > 1 && share > kWaits, .other_in_doubt = true};
+        },
+        [&] { waited_before_ = waited; });
 }
 
 void Dealer::finish_frame(ClientSurface& surface) {

@@ -2,6 +2,7 @@
 // Deals the geometry of windows to nodes, and has it composed (deal.h). The session's mutex is held.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include "client_lib/follow/nodes.h"
 #include "client_lib/geometry/needs.h"
 #include "client_lib/link/parallel.h"
+#include "client_lib/process/measured_choice.h"
 #include "common/wire/limits.h"
 
 namespace wall::client {
@@ -25,6 +27,9 @@ public:
     /// is.
     Dealer(Nodes& nodes, NodeUpdater& updater, bool wanted, const std::optional<Parallel>& group = parallel())
         : nodes_(nodes), updater_(updater), wanted_(wanted), group_(group) {}
+
+    /// The wall lets geometry be dealt that nobody asks for, where that is measured to be faster.
+    void allow_measured(bool allowed) { measured_ = allowed; }
 
     /// One node's part of a draw.
     struct Dealt {
@@ -43,6 +48,8 @@ public:
     void compose(ClientSurface& surface);
     /// A frame of the window is over, composed before.
     void finish_frame(ClientSurface& surface);
+    /// The program may go on behind a frame. `waited`: how long it has waited for nodes behind its frames so far.
+    void note_frame(MeasuredChoice::Time now, MeasuredChoice::Clock::duration waited);
     /// The stream is held on all nodes until the semaphore is above 0, then takes one. What this process is dealt it
     /// may draw before that, for nobody sees it until it is composed: so processes that blend one behind the other draw
     /// at the same time. `windows`: all of the process, composed before.
@@ -63,6 +70,9 @@ private:
     Nodes& nodes_;
     NodeUpdater& updater_;
     const bool wanted_;
+    bool measured_ = false;
+    MeasuredChoice faster_{{.better = 1.1, .least = 8}};  ///< to deal, by frames
+    MeasuredChoice::Clock::duration waited_before_{};     ///< by the beginning of the while that is measured
     const std::optional<Parallel>& group_;
     std::vector<Dealt> dealt_;       ///< used again and again
     bool holds_semaphores_ = false;  ///< some node does

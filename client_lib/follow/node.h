@@ -86,6 +86,7 @@ struct Node {
     std::vector<std::uint32_t> held_semaphores;  ///< that it must take before anything else than what was dealt to it
     wire::PackBuffer batch;                      ///< being packed
     ContextId batch_context;                     ///< whose
+    std::uint64_t batches = 0;                   ///< that were before it
 
     bool alive() const { return stream && !stream->failed(); }
     /// It keeps what comes in a file: it has no tile, and nothing is asked of it.

@@ -15,6 +15,8 @@ constexpr int kConnectTimeoutMs = 2000;
 constexpr std::size_t kBatchBytes =
     256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
 
+constexpr std::size_t kHeldBatchBytes = 16 << 20;  // the same of what waits for more; still one that can be coded
+
 constexpr PixelRect kEverything{-1e9f, -1e9f, 1e9f, 1e9f};
 
 }  // namespace
@@ -34,6 +36,7 @@ void Nodes::forget(Node& node) {
     find_everywhere();
     forget_content(node);
     node.batch.clear();
+    ++node.batches;
     node.held_semaphores.clear();  // it hears of them when it is introduced again
     node.left_out.clear();
     node.slow = node.asks_unanswered = false;
@@ -180,19 +183,21 @@ void Nodes::keep_connected(Node& node) {
 }
 
 wire::PackBuffer& Nodes::batch(Node& node, ContextId context) {
-    if (node.batch_context != context || node.batch.bytes() > kBatchBytes) send(node);
+    if (node.batch_context != context || node.batch.bytes() > (holds_more_ ? kHeldBatchBytes : kBatchBytes)) send(node);
     node.batch_context = context;
     return node.batch;
 }
 
 void Nodes::send(Node& node) {
     if (node.batch.empty()) return;
+    if (holds_more_) before_sending_();
     if (node.alive()) {
         stats().add_node(node.index, NodeCounter::batches, 1);
         node.stream->send(node.batch_context, std::exchange(node.batch, node.stream->spare()));
         transport_.wake();
     }
     node.batch.clear();
+    ++node.batches;
 }
 
 void Nodes::distrust() {
@@ -200,6 +205,7 @@ void Nodes::distrust() {
         if (!node->alive()) continue;
         node->stream->give_up("out of memory");  // short enough to need none
         node->batch.clear();
+        ++node->batches;
     }
 }
 

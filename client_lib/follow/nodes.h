@@ -74,6 +74,10 @@ public:
     /// The node's batch, set to this context (earlier commands of another one are sent first).
     wire::PackBuffer& batch(Node& node, ContextId context);
     void send(Node& node);
+    /// Called before a batch is sent, if something is said of `more`: what is to be packed with others is not sent
+    /// until there is more of it than usual.
+    void before_sending(std::function<void()> call) { before_sending_ = std::move(call); }
+    void hold_more(bool more) { holds_more_ = more; }
     /// Those that record and have asked for it have nothing any more: a file can be read from there on (T7.1). Between
     /// two frames. Whether there are such.
     bool begin_recordings_again();
@@ -116,6 +120,8 @@ private:
     SessionId session_;
     bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
     RequestId last_request_;
+    std::function<void()> before_sending_;
+    bool holds_more_ = false;
     NodeMasks touched_;  ///< used again and again, so that no draw asks for memory
 };
 

@@ -108,6 +108,8 @@ void ClientSession::adopt(const Welcome& welcome, bool moved) {
     bool anew = false;
     id_ = welcome.session;
     nodes_.set_session(id_);
+    snapping_.allow(welcome.lossy_pixels);
+    dealer_.allow_measured(welcome.sort_last_measured);
     if (moved) nodes_.forget_all();
     for (const TileInfo& tile : welcome.tiles) nodes_.at(tile.node);  // also those that are not up
     nodes_.forget_others(welcome);
@@ -167,6 +169,7 @@ void ClientSession::open_surface(ClientSurface& surface) {
 
 void ClientSession::close_surface(ClientSurface& surface) {
     std::lock_guard lock(mutex_);
+    snapping_.forget(surface.id);
     if (surface.opened) surfaces_.close(surface);
 }
 
@@ -178,6 +181,7 @@ void ClientSession::begin_frame(ClientSurface& surface) {
     nodes_.wait_for_attempts(lock, kTakeUpLimit);
     if (!surface.drawn && nodes_.begin_recordings_again()) want_window_contents();
     surfaces_.begin_frame(surface);
+    snapping_.begin_frame(surface);
 }
 
 std::vector<geom::View> ClientSession::views_of(const DrawTarget& target) {
@@ -223,6 +227,7 @@ void ClientSession::swap(ContextId context, ClientSurface& surface) {
         const DrawTarget target(surface);
         windows_.bring(target);
         windows_.forget(surface.id);
+        snapping_.settle();
         dealer_.compose(surface);
         dealer_.finish_frame(surface);
         hidden_.finish_frame(surface);
@@ -241,8 +246,13 @@ void ClientSession::swap(ContextId context, ClientSurface& surface) {
         stats().end_frame();
     }
     const FrameWait wait{mutex_, nodes_, std::chrono::milliseconds(control_->welcome().swap_timeout_ms)};
+    const auto begin = std::chrono::steady_clock::now();
     if (surfaces_.common(surface)) wait_for_group(wait, surface);
     else wait_for_nodes(wait, surface, whole_frames);
+    const auto end = std::chrono::steady_clock::now();
+    std::lock_guard lock(mutex_);
+    waited_ += end - begin;
+    dealer_.note_frame(end, waited_);
 }
 
 /// All that show the surface; in a parallel program all there are, because its members keep step on each.
@@ -257,9 +267,12 @@ std::vector<NodeIndex> ClientSession::swap_nodes(const ClientSurface& surface) {
 
 // ---- commands ----
 
-void ClientSession::submit_block(const DrawSource& source, const Packer& packer,
-                                 const glstate::Projection& projection) {
-    packing([&] { BlockSender(followers_, source, packer, projection, *sort_scratch_).run(); });
+void ClientSession::submit_block(const DrawSource& source, Packer& packer, const glstate::Projection& projection) {
+    packing([&] {
+        const auto moved = snapping_.before_block(source, packer, projection);
+        sort_scratch_->packed = snapping_.packed();
+        BlockSender(followers_, source, packer, moved ? *moved : projection, *sort_scratch_).run();
+    });
 }
 
 void ClientSession::before_clear(const DrawSource& source, std::uint32_t mask, bool wipes) {

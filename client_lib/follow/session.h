@@ -13,6 +13,7 @@
 
 #include "client_lib/follow/fence.h"
 #include "client_lib/follow/followers.h"
+#include "client_lib/follow/snapping.h"
 #include "client_lib/follow/surfaces.h"
 #include "client_lib/follow/sync_objects.h"
 #include "client_lib/geometry/packer.h"
@@ -57,8 +58,9 @@ public:
     void swap(ContextId context, ClientSurface& surface);
 
     // ---- commands; the context's block has been sent before ----
-    /// Sends a block of geometry to the nodes that it touches. `source.state` is that behind the block, then.
-    void submit_block(const DrawSource& source, const Packer& packer, const glstate::Projection& projection);
+    /// Sends a block of geometry to the nodes that it touches, its vertices a little off if that may be. `source.state`
+    /// is that behind the block, then.
+    void submit_block(const DrawSource& source, Packer& packer, const glstate::Projection& projection);
     /// Runs `pack(buffer)` inside a Block on every layer of the draw target that `drawn` touches.
     template <class Pack>
     void draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Pack&& pack);
@@ -150,11 +152,13 @@ private:
     bool moving_ = false;  ///< another wall has taken the program
     OpenSurfaces open_surfaces_;
     Nodes nodes_{stream_events()};
+    std::chrono::steady_clock::duration waited_{};  ///< for nodes behind frames
     NodeUpdater updater_{nodes_};
     HiddenParts hidden_{nodes_, open_surfaces_};
     Dealer dealer_{nodes_, updater_, options().sort_last};
     WindowContents windows_{nodes_, dealer_};
     Surfaces surfaces_{*control_, nodes_, hidden_, open_surfaces_};
+    Snapping snapping_{nodes_, options().lossy_pixels};
     Sight sight_;
     const Followers followers_{nodes_, updater_, hidden_, dealer_, windows_, sight_};
     const std::unique_ptr<SortScratch> sort_scratch_;

@@ -19,6 +19,7 @@
 #include "client_lib/process/process.h"
 #include "client_lib/process/stats.h"
 #include "common/base/address.h"
+#include "common/base/lossy_pixels.h"
 #include "common/base/quoted.h"
 
 namespace wall::client {
@@ -64,6 +65,11 @@ Hello Hello::from_environment() {
     const auto hold = environment("WALLGL_HOLD");
     hello.hold = !hold.empty() && hold != "0";
     hello.sort_last = environment("WALLGL_SORT_LAST") == "1";
+    if (const auto pixels = environment("WALLGL_LOSSY_PIXELS"); !pixels.empty()) {
+        hello.lossy_pixels = lossy_pixels_of_text(pixels);
+        if (!hello.lossy_pixels)
+            hello.invalid = "WALLGL_LOSSY_PIXELS: expected a number from 0 to 16, got '" + pixels + "'";
+    }
     if (const auto stereo = environment("WALLGL_STEREO"); !stereo.empty()) {
         hello.stereo = stereo_of_text(stereo);
         if (!hello.stereo) hello.invalid = "WALLGL_STEREO: expected PERCENT or PERCENT,DISTANCE, got '" + stereo + "'";

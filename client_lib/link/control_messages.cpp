@@ -230,6 +230,8 @@ Welcome read_welcome(pbf_reader in) {
             case 5: welcome.nodes.push_back(read_node(read_message(in), true)); break;
             case 6: welcome.caps = read_caps(read_message(in)); break;
             case 7: welcome.swap_timeout_ms = read_u32(in); break;
+            case 8: welcome.lossy_pixels = read_float(in); break;
+            case 9: welcome.sort_last_measured = read_u32(in) != 0; break;
             default: in.skip();
         }
     }
@@ -359,6 +361,7 @@ std::string encode(const Hello& hello) {
         if (hello.resume) put_resume(out, 10, *hello.resume);
         if (hello.stereo) put_stereo(out, 11, *hello.stereo);
         if (hello.sort_last) out.add_bool(12, true);
+        if (hello.lossy_pixels) out.add_float(13, *hello.lossy_pixels);
         if (!hello.group) return;
         pbf_writer group(out, 9);
         put_string(group, 1, hello.group->group);
@@ -434,6 +437,7 @@ std::string encode(const Traffic& traffic) {
         }
         for (const SurfaceId surface : traffic.seen) out.add_uint32(5, surface.value);
         for (const SurfaceId surface : traffic.flat) out.add_uint32(6, surface.value);
+        out.add_uint64(7, traffic.lossy_vertices);
     });
 }
 

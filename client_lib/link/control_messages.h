@@ -34,17 +34,18 @@ struct Resume {
 /// What a program says of itself when it comes to the wall.
 struct Hello {
     std::uint32_t pid = 0;
-    std::string program;             ///< the program's name, for people
-    std::string name;                ///< WALLGL_NAME
-    std::optional<geom::Rect> rect;  ///< WALLGL_RECT; nothing: where there is room, 1:1
-    bool fullscreen = false;         ///< WALLGL_RECT=fullscreen
-    bool hold = false;               ///< WALLGL_HOLD
-    std::optional<Stereo> stereo;    ///< WALLGL_STEREO
-    bool sort_last = false;          ///< WALLGL_SORT_LAST
-    std::string token;               ///< from WALLGL_TOKEN_FILE: who owns the session, if not the Unix user
-    std::optional<Parallel> group;   ///< from WALLGL_PARALLEL
-    std::optional<Resume> resume;    ///< it was on the wall before
-    std::string invalid;             ///< what is wrong in the environment; ControlLink::open fails with it
+    std::string program;                ///< the program's name, for people
+    std::string name;                   ///< WALLGL_NAME
+    std::optional<geom::Rect> rect;     ///< WALLGL_RECT; nothing: where there is room, 1:1
+    bool fullscreen = false;            ///< WALLGL_RECT=fullscreen
+    bool hold = false;                  ///< WALLGL_HOLD
+    std::optional<Stereo> stereo;       ///< WALLGL_STEREO
+    bool sort_last = false;             ///< WALLGL_SORT_LAST
+    std::optional<float> lossy_pixels;  ///< WALLGL_LOSSY_PIXELS
+    std::string token;                  ///< from WALLGL_TOKEN_FILE: who owns the session, if not the Unix user
+    std::optional<Parallel> group;      ///< from WALLGL_PARALLEL
+    std::optional<Resume> resume;       ///< it was on the wall before
+    std::string invalid;                ///< what is wrong in the environment; ControlLink::open fails with it
 
     /// Of this process, from its name and the environment.
     static Hello from_environment();
@@ -86,6 +87,8 @@ struct Welcome {
     std::vector<NodeInfo> nodes;
     Caps caps;
     std::uint32_t swap_timeout_ms = 250;
+    float lossy_pixels = 0;           ///< how far vertices may lie from where they belong, pixels of the wall
+    bool sort_last_measured = false;  ///< geometry may be dealt to nodes where that is measured to be faster
 };
 
 struct Refused {

@@ -76,6 +76,11 @@ public:
     /// When it said that it has drawn its latest frame of `surface`; nothing: none yet. Application threads.
     std::optional<std::chrono::steady_clock::time_point> last_swap(SurfaceId surface) const;
 
+    /// What is sent just now is coded. Any thread.
+    bool codes() const {
+        std::lock_guard lock(mutex_);
+        return number_ != 0 && choice_.codes();
+    }
     /// `frame` of `surface` was sent: the node is waited for until it has drawn it. Application threads.
     void expect_swap(SurfaceId surface, std::uint32_t frame);
 

@@ -6,6 +6,7 @@
 
 #include "client_lib/process/log.h"
 #include "common/base/camera_names.h"
+#include "common/base/lossy_pixels.h"
 
 namespace wall::client {
 namespace {
@@ -17,6 +18,11 @@ bool is(const char* name, const char* wanted) {
 
 Coding coding() {
     return is("WALLGL_CODING", "0") ? Coding::never : is("WALLGL_CODING", "1") ? Coding::always : Coding::measured;
+}
+
+std::optional<float> lossy_pixels() {
+    const char* text = secure_getenv("WALLGL_LOSSY_PIXELS");
+    return text == nullptr ? std::nullopt : lossy_pixels_of_text(text);
 }
 
 std::vector<std::string> cameras() {
@@ -37,6 +43,7 @@ const Options& options() {
                                                 !is("WALLGL_RING", "0"),
                                                 coding(),
                                                 is("WALLGL_SORT_LAST", "1"),
+                                                lossy_pixels(),
                                                 cameras()};
     return *read;
 }

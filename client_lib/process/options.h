@@ -2,6 +2,7 @@
 // The environment variables that change how the client library works, read once (docs/client-library.md lists them).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Options {
     Coding coding =
         Coding::measured;    ///< WALLGL_CODING=0: never, 1: always; else where the link is measured to be slow
     bool sort_last = false;  ///< WALLGL_SORT_LAST=1: geometry may be dealt to nodes (docs/sort-last.md)
+    /// WALLGL_LOSSY_PIXELS: how far vertices may lie from where they belong; none: as the wall has it
+    std::optional<float> lossy_pixels = {};
     std::vector<std::string> cameras = {};  ///< WALLGL_CAMERA: uniforms that may be a program's camera
 };
 

@@ -88,6 +88,12 @@ void Stats::add(std::string_view name, std::uint64_t n) {
     entry(counters_, name) += n;
 }
 
+void Stats::raise(std::string_view name, std::uint64_t value) {
+    std::lock_guard lock(mutex_);
+    auto& most = entry(counters_, name);
+    most = std::max(most, value);
+}
+
 std::uint64_t Stats::get(std::string_view name) const {
     std::lock_guard lock(mutex_);
     const auto found = counters_.find(name);
@@ -149,6 +155,7 @@ Traffic Stats::traffic() const {
     std::lock_guard lock(mutex_);
     out.frames = frames_;
     out.round_trips = round_trips();
+    if (const auto lossy = counters_.find(kLossyVertices); lossy != counters_.end()) out.lossy_vertices = lossy->second;
     return out;
 }
 

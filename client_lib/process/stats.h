@@ -30,7 +30,8 @@ enum class NodeCounter : std::uint8_t {
 
 class Stats {
 public:
-    static constexpr std::size_t kMaxNodes = 512;  ///< nodes beyond are counted as the last one
+    static constexpr std::string_view kLossyVertices = "lossy_vertices";  ///< a name for add()
+    static constexpr std::size_t kMaxNodes = 512;                         ///< nodes beyond are counted as the last one
 
     Stats();
     ~Stats();
@@ -47,6 +48,8 @@ public:
     /// A counter by name, for things that happen at most some thousand times a second; made at its first use.
     void add(std::string_view name, std::uint64_t n = 1);
     std::uint64_t get(std::string_view name) const;
+    /// The same of something that only its largest value counts of.
+    void raise(std::string_view name, std::uint64_t value);
 
     /// An answer was waited for, on behalf of this function.
     void count_round_trip(std::string_view function);

@@ -18,6 +18,7 @@ struct NodeTraffic {
 
 struct Traffic {
     std::uint64_t frames = 0, round_trips = 0;
+    std::uint64_t lossy_vertices = 0;      ///< that were sent a little off
     std::chrono::nanoseconds diff_time{};  ///< comparing contexts with what nodes hold; an estimate
     std::vector<NodeTraffic> nodes;        ///< those that something was packed for
     /// Windows that cover tiles that look elsewhere: seen through their views, or shown flat.

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/base/lossy_pixels.h"
 #include "common/config/eyes.h"
 #include "common/config/parse_toml.h"
 #include "common/config/read_gpus.h"
@@ -184,12 +185,22 @@ QuotaConfig read_quota(TreeReader& read, const toml::table& root) {
     return out;
 }
 
+/// Whose geometry may be dealt to nodes: of programs that ask for it, or of all, where that is faster.
+bool read_sort_last(TreeReader& read, const toml::table& wall) {
+    const auto given = read.text(wall, "sort_last", "asked");
+    if (given != "asked" && given != "measured")
+        read.refuse(wall.get("sort_last")->source(),
+                    "'sort_last' is '" + given + "': expected \"asked\" or \"measured\"");
+    return given == "measured";
+}
+
 WallConfig read_wall(TreeReader& read, const toml::table& root) {
     WallConfig out;
     read.only(root, "the file", {"wall", "control", "http", "people", "quota", "node"});
     const auto& wall = read.section(root, "wall");
     read.only(wall, "[wall]",
-              {"name", "background", "swap_timeout_ms", "close_timeout_ms", "max_sessions", "state_directory", "eye"});
+              {"name", "background", "swap_timeout_ms", "close_timeout_ms", "max_sessions", "state_directory", "eye",
+               "lossy_pixels", "sort_last"});
     out.name = read.text(wall, "name", "wall");
     out.background = read_background(read, wall);
     out.swap_timeout =
@@ -198,6 +209,8 @@ WallConfig read_wall(TreeReader& read, const toml::table& root) {
         read.integer(wall, "close_timeout_ms", 0, kMaxCloseTimeout, out.close_timeout.count()));
     out.max_sessions =
         static_cast<std::uint32_t>(read.integer(wall, "max_sessions", 1, kMaxSessions, out.max_sessions));
+    out.lossy_pixels = static_cast<float>(read.number(wall, "lossy_pixels", 0, kMostLossyPixels, 0));
+    out.sort_last_measured = read_sort_last(read, wall);
     if (wall.get("state_directory")) out.state_directory = read.text(wall, "state_directory");
     out.eye = read_eye(read, wall);
     read_control(read, root, out);

@@ -109,6 +109,8 @@ struct WallConfig {
     QuotaConfig quota;                         ///< and have how much
     std::vector<net::Address> http_listen;     ///< none: no HTTP; over TLS where other machines reach it
     std::chrono::milliseconds swap_timeout{250};
+    bool sort_last_measured = false;  ///< geometry of all programs may be dealt to nodes, where that is faster
+    float lossy_pixels = 0;           ///< how far programs' vertices may lie from where they belong, pixels of the wall
     std::chrono::milliseconds close_timeout{
         3000};                         ///< a program that was asked to close and has not by then is cut off
     std::uint32_t max_sessions = 256;  ///< programs on the wall at once

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "common/base/camera_names.h"
+#include "common/base/lossy_pixels.h"
 #include "common/base/stereo.h"
 #include "common/net/control_client.h"
 
@@ -96,6 +97,11 @@ Result<void> check_camera(const std::string& camera) {
                 " names of uniforms as the shaders have them, for example viewProjection or camera.proj,matrices[1]");
 }
 
+Result<void> check_lossy_pixels(const std::string& pixels) {
+    if (pixels.empty() || lossy_pixels_of_text(pixels)) return {};
+    return fail("lossy pixels '" + pixels + "': expected a number from 0 to 16, for example 0.25; 0: nothing is lost");
+}
+
 std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files,
                                                    const std::string& library_path) {
     std::map<std::string, std::string> out{
@@ -110,6 +116,7 @@ std::map<std::string, std::string> environment_for(const Launch& launch, const V
     if (!launch.stereo.empty()) out["WALLGL_STEREO"] = launch.stereo;
     if (launch.sort_last) out["WALLGL_SORT_LAST"] = "1";
     if (!launch.camera.empty()) out["WALLGL_CAMERA"] = launch.camera;
+    if (!launch.lossy_pixels.empty()) out["WALLGL_LOSSY_PIXELS"] = launch.lossy_pixels;
     return out;
 }
 

@@ -18,6 +18,7 @@ struct Launch {
     bool hold = false;
     std::string stereo;  ///< "PERCENT", "PERCENT,DISTANCE" or nothing
     bool sort_last = false;
+    std::string lossy_pixels;  ///< a number or nothing
     std::string camera;  ///< names of uniforms, with commas between them, or nothing
 };
 
@@ -36,6 +37,7 @@ Result<void> check_walld(const std::string& address, std::string* answer_json = 
 Result<void> check_rect(const std::string& rect);
 Result<void> check_stereo(const std::string& stereo, bool parallel);
 Result<void> check_camera(const std::string& camera);
+Result<void> check_lossy_pixels(const std::string& pixels);
 
 /// Variables to set; LD_LIBRARY_PATH goes before what is there (`library_path`).
 std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files,

@@ -92,6 +92,12 @@ int main(int argc, char** argv) {
         "--sort-last", launch.sort_last,
         "its geometry may be dealt to the wall's nodes, each of which draws a part of it, and their pictures be "
         "put together by depth: for programs that have more geometry than one node can draw");
+    app.add_option(
+           "--lossy-pixels", launch.lossy_pixels,
+           "vertices may lie so far from where they belong, in pixels of the wall, which makes the stream smaller: at "
+           "most what the wall allows. 0: nothing is lost. Without it the wall decides, and nothing is lost where "
+           "links are fast")
+        ->type_name("PIXELS");
     auto* processes =
         app.add_option("--parallel", parallel, "a parallel program: so many processes draw into its windows together")
             ->type_name("N");
@@ -110,6 +116,7 @@ int main(int argc, char** argv) {
     const bool of_many = parallel > 0 || !group.empty();
     if (auto good = check_stereo(launch.stereo, of_many); !good) give_up(good.error());
     if (auto good = check_camera(launch.camera); !good) give_up(good.error());
+    if (auto good = check_lossy_pixels(launch.lossy_pixels); !good) give_up(good.error());
     if (*processes && parallel == 0) give_up({"--parallel: expected at least one process"});
     if (parallel > 0) group = new_group_name(command[0]);
     if (!group.empty()) {

@@ -29,6 +29,8 @@ constexpr MetricRow<SessionRef> kSessions[] = {
      [](const SessionRef& s) { return s->traffic.frames(); }},
     {Counter, "wallgl_session_round_trips_total", "Times that the program waited for an answer of a node.",
      [](const SessionRef& s) { return s->traffic.round_trips(); }},
+    {Counter, "wallgl_session_lossy_vertices_total", "Vertices that were sent a little off, as the wall allows.",
+     [](const SessionRef& s) { return s->traffic.lossy_vertices(); }},
     {Counter, "wallgl_session_diff_seconds_total",
      "Time of the program in comparing contexts with what nodes hold; an estimate from samples.",
      [](const SessionRef& s) { return s->traffic.diff_seconds(); }},

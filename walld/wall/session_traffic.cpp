@@ -42,6 +42,7 @@ void SessionTraffic::note(std::uint32_t rank, const proto::ClientStats& report, 
     process.noted = now;
     process.frames = report.frames();
     process.round_trips = report.round_trips();
+    process.lossy_vertices = report.lossy_vertices();
     process.diff_seconds = 1e-9 * static_cast<double>(report.diff_ns());
 }
 
@@ -67,6 +68,12 @@ std::uint64_t SessionTraffic::frames() const {
 std::uint64_t SessionTraffic::round_trips() const {
     std::uint64_t sum = 0;
     for (const auto& [rank, process] : processes_) sum += process.round_trips;
+    return sum;
+}
+
+std::uint64_t SessionTraffic::lossy_vertices() const {
+    std::uint64_t sum = 0;
+    for (const auto& [rank, process] : processes_) sum += process.lossy_vertices;
     return sum;
 }
 

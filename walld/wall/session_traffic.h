@@ -39,6 +39,7 @@ public:
     SentBytes sent() const;  ///< to all nodes
     std::uint64_t frames() const;
     std::uint64_t round_trips() const;
+    std::uint64_t lossy_vertices() const;
     double diff_seconds() const;
     Rates rates() const;
 
@@ -46,7 +47,7 @@ private:
     struct Process {
         std::map<NodeIndex, SentBytes> by_node;
         SentBytes sent;
-        std::uint64_t frames = 0, round_trips = 0;
+        std::uint64_t frames = 0, round_trips = 0, lossy_vertices = 0;
         double diff_seconds = 0;
         Rates rates;
         std::optional<Clock::time_point> noted;

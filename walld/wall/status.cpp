@@ -101,6 +101,7 @@ json traffic_json(const SessionTraffic& traffic) {
     const auto& rates = traffic.rates();
     return {{"frames", traffic.frames()},
             {"round_trips", traffic.round_trips()},
+            {"lossy_vertices", traffic.lossy_vertices()},
             {"diff_seconds", traffic.diff_seconds()},
             {"state_bytes", sent.state},
             {"object_bytes", sent.object},
@@ -236,6 +237,7 @@ static json session_json(const Wall& wall, SessionId id, const std::map<SessionI
              {"weight", session.weight},
              {"stereo", stereo_json(session.stereo)},
              {"sort_last", session.sort_last},
+             {"lossy_pixels", session.lossy_pixels},
              {"partials",
               {{"bytes", held.partials.bytes},
                {"merged", held.partials.merged},

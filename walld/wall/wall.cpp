@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "common/base/assert.h"
+#include "common/base/lossy_pixels.h"
 #include "common/wire/limits.h"
 #include "walld/wall/caps.h"
 #include "walld/wall/messages.h"
@@ -192,6 +194,19 @@ std::set<NodeIndex> Wall::nodes_under(const geom::Rect& rect) const {
 
 bool Wall::any_node_up() const { return std::ranges::any_of(nodes_, &Node::up); }
 
+/// Whether the wall lets a program ask for so much.
+Outcome<void> Wall::check_lossy(float pixels) const {
+    if (!is_lossy_bound(static_cast<double>(pixels)))
+        return walld::refuse(RefusalKind::invalid, "expected 0 to 16 lossy pixels");
+    if (pixels <= config_.lossy_pixels) return {};
+    std::ostringstream text;
+    text << "the program asks for vertices that lie up to " << pixels << " pixels off, and the wall allows "
+         << config_.lossy_pixels
+         << "; expected at most that ('--lossy-pixels' of wallrun), or more in 'lossy_pixels' in "
+         << "[wall] of wall.toml";
+    return walld::refuse(RefusalKind::forbidden, text.str());
+}
+
 Outcome<void> Wall::check(const proto::ClientHello& hello) const {
     if (hello.version() != wire::kProtocolVersion) {
         return walld::refuse(RefusalKind::invalid,
@@ -203,6 +218,7 @@ Outcome<void> Wall::check(const proto::ClientHello& hello) const {
                              "the wall is full: " + std::to_string(config_.max_sessions) +
                                  " programs are on it ('max_sessions' in [wall] of wall.toml)");
     }
+    if (auto allowed = check_lossy(hello.lossy_pixels()); !allowed) return allowed;
     if (hello.has_rect()) {
         if (auto possible = check_place(config_.canvas(), from_proto(hello.rect())); !possible)
             return tl::unexpected(possible.error());
@@ -228,7 +244,8 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     session.name = hello.name().substr(0, kMaxText);
     session.owner = std::move(owner);
     session.held = hello.hold();
-    session.sort_last = hello.sort_last();
+    session.sort_last = hello.sort_last() || (config_.sort_last_measured && !session.group);
+    session.lossy_pixels = hello.has_lossy_pixels() ? hello.lossy_pixels() : config_.lossy_pixels;
     if (hello.has_stereo() && !session.group) session.stereo = checked(hello.stereo());
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
     session.fullscreen = hello.fullscreen();
@@ -326,6 +343,8 @@ void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank, 
         caps.push_back(&nodes_[i].hello.caps());
     }
     *welcome.mutable_caps() = common_caps(caps);
+    welcome.set_lossy_pixels(config_.lossy_pixels);
+    welcome.set_sort_last_measured(session.sort_last && config_.sort_last_measured);
     welcome.set_swap_timeout_ms(static_cast<std::uint32_t>(config_.swap_timeout / std::chrono::milliseconds(1)));
     out_.to_member(id, rank, make(&proto::Envelope::mutable_client_welcome, welcome));
 }

@@ -142,6 +142,7 @@ struct SessionEntry {
     bool fullscreen = false;
     bool held = false;
     bool sort_last = false;  ///< its geometry may be dealt to nodes
+    float lossy_pixels = 0;  ///< how far its vertices may lie from where they belong
     std::string fault;       ///< what a node said against its stream
     std::uint32_t weight = wire::kUsualWeight;
     std::optional<proto::Stereo> stereo;  ///< of its pictures for two eyes; none: both see the same
@@ -225,6 +226,7 @@ public:
     bool any_node_up() const;
     /// Why this program cannot be taken now, if so.
     Outcome<void> check(const proto::ClientHello& hello) const;
+    Outcome<void> check_lossy(float pixels) const;
     /// Why it cannot be taken as this person's process of a parallel program, if so.
     Outcome<void> check_member(const proto::ClientHello& hello, const Person& who) const;
     /// Why this person may have no other program now, if so (wall_quota.cpp).

@@ -83,6 +83,21 @@ class ProgramsThatAreDealt(unittest.TestCase):
                 wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
                 self.assertEqual(self.partials(wall, session)["missed"], 0)
 
+    def test_a_wall_may_have_it_tried_for_all(self) -> None:
+        """Whether it is kept is a matter of speed; that it is tried is seen where a program waits for its nodes."""
+        expected = self.without(FRAME)
+        wall = self.enterContext(PlannedWall(plan_of(2), node_keys=keys_of(2), environment=QUIET, swap_timeout_ms=5000,
+                                             options='sort_last = "measured"', die_with_parent=True))
+        app, session = self.start(wall, *MARCH, sort_last=False)
+        self.assertEqual(int((self.picture(wall, session, FRAME) != expected).any(axis=2).sum()), 0)
+        self.assertEqual(self.partials(wall, session)["merged"], 0)
+        wall.hold(session, False)
+        wall._until(lambda: self.partials(wall, session)["merged"] > 0, "it is tried", "walld", limit=60)
+        wall.hold(session)
+        after = self.picture(wall, session, 1)
+        frame = next(s for s in wall.sessions() if s["id"] == session)["surfaces"][0]["frame"]
+        self.assertEqual(int((after != self.without(frame)).any(axis=2).sum()), 0)
+
     def test_a_node_that_draws_may_go(self) -> None:
         wall = self.wall_of(2)
         app, session = self.start(wall, *MARCH)

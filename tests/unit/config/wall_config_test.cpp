@@ -95,6 +95,13 @@ TEST(WallConfig, ReadsEverything) {
     EXPECT_EQ(config->find_node("middle"), nullptr);
 }
 
+TEST(WallConfig, NothingIsLostUnlessItSaysSo) {
+    EXPECT_EQ(parse_config(kGood, "wall.toml")->lossy_pixels, 0);
+    std::string text = kGood;
+    text.replace(text.find("background"), 0, "lossy_pixels = 0.25\n");
+    EXPECT_EQ(parse_config(text, "wall.toml")->lossy_pixels, 0.25f);
+}
+
 TEST(WallConfig, NamesAndCommentsMayBeInAnyLanguage) {
     const auto config = parse_config(
         "# f\u00fcr alle\n[wall]\nname='W\u00e4nde \\\\ "
@@ -289,6 +296,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"name_type", "\"lab\"", "7", "wall.toml:3: ", "'name': expected a string"},
         Wrong{"colour", "#102030", "grey", "wall.toml:4: ", "expected a colour as \"#RRGGBB\""},
         Wrong{"timeout_range", "= 100", "= 0", "wall.toml:5: ", "expected an integer from 1 to 10000"},
+        Wrong{"lossy_pixels", "max_sessions = 7", "lossy_pixels = 17", "wall.toml:7: ",
+              "'lossy_pixels': expected a number from 0 to 16"},
         Wrong{"address", "127.0.0.1:7770", "here", "wall.toml:11: ", "expected unix:PATH or HOST:PORT"},
         Wrong{"listen_type", "[\"unix:/run/wallgl/walld.sock\", \"127.0.0.1:7770\"]", "7770",
               "wall.toml:11: ", "expected an array of addresses"},

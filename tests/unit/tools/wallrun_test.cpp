@@ -68,6 +68,15 @@ TEST(Wallrun, ChecksCameras) {
     EXPECT_EQ(environment_for(launch, {}, "").at("WALLGL_CAMERA"), "a.b,c[1]");
 }
 
+TEST(Wallrun, ChecksLossyPixels) {
+    for (const char* good : {"", "0", "0.25", "16"}) EXPECT_TRUE(check_lossy_pixels(good)) << good;
+    for (const char* bad : {"-0.1", "16.1", "nan", "inf", "much", "1 "}) EXPECT_FALSE(check_lossy_pixels(bad)) << bad;
+    Launch launch;
+    launch.lossy_pixels = "0.25";
+    EXPECT_EQ(environment_for(launch, {}, "").at("WALLGL_LOSSY_PIXELS"), "0.25");
+    EXPECT_FALSE(environment_for({}, {}, "").contains("WALLGL_LOSSY_PIXELS"));
+}
+
 TEST(Wallrun, ChecksRectangles) {
     for (const char* good : {"", "fullscreen", "0,0,1,1", "-5,0,10,10"}) EXPECT_TRUE(check_rect(good)) << good;
     for (const char* bad : {"1,2,3", "1,2,3,4,5", "1,2,0,4", "1,2,3,-4", "a", "1x2+3+4"})

@@ -134,6 +134,34 @@ TEST_F(ADealer, GivesTheFirstFrameToTheFirstNode) {
     EXPECT_THAT(packed(kDraws).ops, IsEmpty());
 }
 
+// Time goes as the test says: a program that waits for its nodes all the time, and draws twice as many frames dealt.
+TEST_F(ADealer, DealsByItselfWhatIsFasterSo) {
+    Dealer own{nodes, updater, false, group};
+    MeasuredChoice::Time now{1h};
+    MeasuredChoice::Clock::duration waited{};
+    const auto dealt_of = [&](int frames, bool waits) {
+        int dealt = 0;
+        for (int i = 0; i < frames; ++i) {
+            const bool is_dealt = !own.deal(source(), Reach(), 10).empty();
+            dealt += is_dealt;
+            const auto took = is_dealt ? 25ms : 50ms;
+            now += took;
+            waited += waits ? took : 0ms;
+            own.compose(surface);
+            own.finish_frame(surface);
+            own.note_frame(now, waited);
+        }
+        return dealt;
+    };
+    EXPECT_EQ(dealt_of(100, true), 0) << "the wall does not let it";
+    own.allow_measured(true);
+    EXPECT_EQ(dealt_of(100, false), 0) << "it does not wait for nodes";
+    dealt_of(40, true);
+    EXPECT_GT(dealt_of(1000, true), 900);
+    own.allow_measured(false);
+    EXPECT_EQ(dealt_of(10, true), 0) << "another wall may not";
+}
+
 TEST_F(ADealer, DividesAFrameAsTheOneBeforeHasCost) {
     for (int i = 0; i < 4; ++i) draw(std::nullopt, 10);
     swap();

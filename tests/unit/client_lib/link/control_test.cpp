@@ -183,10 +183,13 @@ TEST(ControlMessages, HelloIsWhatProtobufReads) {
     EXPECT_EQ(read.rect().height(), 480u);
     EXPECT_FALSE(read.fullscreen());
     EXPECT_TRUE(read.hold());
+    EXPECT_FALSE(read.has_lossy_pixels());
 
     hello.rect.reset();
     hello.fullscreen = true;
+    hello.lossy_pixels = 0;
     ASSERT_TRUE(envelope.ParseFromString(encode(hello)));
+    EXPECT_TRUE(envelope.client_hello().has_lossy_pixels()) << "none is something else than what the wall has";
     EXPECT_FALSE(envelope.client_hello().has_rect());
     EXPECT_TRUE(envelope.client_hello().fullscreen());
 }
@@ -246,10 +249,11 @@ TEST(ControlMessages, TrafficIsWhatProtobufReads) {
     constexpr std::uint64_t kMany = std::uint64_t{1} << 40;
     proto::Envelope envelope;
     ASSERT_TRUE(envelope.ParseFromString(encode(
-        Traffic{600, 7, std::chrono::nanoseconds(kMany), {{NodeIndex(0), 1, 2, 3}, {NodeIndex(4), kMany, 0, 5}}})));
+        Traffic{600, 7, 9, std::chrono::nanoseconds(kMany), {{NodeIndex(0), 1, 2, 3}, {NodeIndex(4), kMany, 0, 5}}})));
     const auto& read = envelope.client_stats();
     EXPECT_EQ(read.frames(), 600u);
     EXPECT_EQ(read.round_trips(), 7u);
+    EXPECT_EQ(read.lossy_vertices(), 9u);
     EXPECT_EQ(read.diff_ns(), kMany);
     ASSERT_EQ(read.nodes_size(), 2);
     EXPECT_EQ(read.nodes(0).object_bytes(), 2u);

@@ -45,6 +45,15 @@ TEST_F(Traffic, RatesAreThoseBetweenTheLastTwoReports) {
     EXPECT_DOUBLE_EQ(traffic_.rates().frame_bytes, 0) << "no frame, no mean";
 }
 
+TEST_F(Traffic, VerticesOfAllProcessesCount) {
+    auto first = report(1, {}), second = report(1, {});
+    first.set_lossy_vertices(5);
+    second.set_lossy_vertices(6);
+    traffic_.note(0, first, 2, at(0));
+    traffic_.note(1, second, 2, at(0));
+    EXPECT_EQ(traffic_.lossy_vertices(), 11u);
+}
+
 TEST_F(Traffic, NodesThatTheWallHasNotArePassedOver) {
     traffic_.note(0, report(1, {{1, 1, 1}, {2, 2, 2}, {4, 4, 4}}), 2, at(0));
     EXPECT_EQ(traffic_.sent(), (SentBytes{3, 3, 3}));

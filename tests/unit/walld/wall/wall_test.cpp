@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "common/config/load_config.h"
@@ -218,6 +219,22 @@ TEST_F(TheWall, ARectangleMustBePossible) {
     hello.clear_rect();
     hello.set_version(wire::kProtocolVersion + 1);
     EXPECT_FALSE(wall_.check(hello));
+}
+
+TEST_F(TheWall, AllowsNoMoreLossThanItsDescriptionDoes) {
+    proto::ClientHello hello;
+    hello.set_version(wire::kProtocolVersion);
+    hello.set_lossy_pixels(0);
+    EXPECT_TRUE(wall_.check(hello));
+    hello.set_lossy_pixels(0.25f);
+    const auto refused = wall_.check(hello);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, RefusalKind::forbidden);
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("up to 0.25 pixels off, and the wall allows 0;"));
+    for (const float wrong : {-1.0f, 17.0f, NAN}) {
+        hello.set_lossy_pixels(wrong);
+        EXPECT_EQ(wall_.check(hello).error().kind, RefusalKind::invalid) << wrong;
+    }
 }
 
 TEST_F(TheWall, APlacementFollowsTheWindowUnlessItIsScaled) {
