@@ -35,11 +35,26 @@ Snapping::Snapping(Nodes& nodes, std::optional<float> asked) : nodes_(nodes), as
 
 float Snapping::bound() const { return std::min(asked_.value_or(allowed_), allowed_); }
 
+/// In the next frame.
+bool Snapping::is_wanted() {
+    if (bound() <= 0 || asked_) return bound() > 0;
+    std::uint64_t packed = 0, sent = 0;
+    bool codes = false;
+    for (const auto& node : nodes_) {
+        if (!node->alive() || node->records()) continue;
+        codes = codes || node->stream->codes();
+        for (const auto kind : {NodeCounter::state_bytes, NodeCounter::object_bytes, NodeCounter::geometry_bytes})
+            packed += stats().of_node(node->index, kind);
+        sent += stats().of_node(node->index, NodeCounter::link_bytes);
+    }
+    if (codes) choice_.note_frame(packed, sent);
+    return codes && choice_.moves();
+}
+
 // What is kept in a file may be shown larger some day.
 void Snapping::begin_frame(const ClientSurface& surface) {
-    const auto codes = [](const auto& node) { return node->alive() && !node->records() && node->stream->codes(); };
     const auto records = [](const auto& node) { return node->alive() && node->records(); };
-    const bool wanted = bound() > 0 && (asked_ || std::ranges::any_of(nodes_, codes));
+    const bool wanted = is_wanted();
     if (!wanted && frames_.empty()) return;
     Frame& frame = frames_[surface.id];
     frame.snaps = wanted && std::ranges::none_of(nodes_, records);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // When vertices are sent a little off (geometry/snap.h): as far as the wall allows it, or the program asks for less;
-// where a link is measured to be slow (link/coding_choice.h), or always if the program asks for it. All nodes of a
-// frame get the same. The session's mutex is held.
+// where a link is measured to be slow (link/coding_choice.h) and the stream to become smaller (smaller_choice.h), or
+// always if the program asks for it. All nodes of a frame get the same. The session's mutex is held.
 //
 // The blocks of one transformation may share vertices, and which grid they get depends on whether one of them reaches
 // behind the eye. So their vertices are moved in the nodes' batches once all blocks are there: when the transformation
@@ -20,6 +20,7 @@
 #include "client_lib/follow/block_sender.h"
 #include "client_lib/follow/draw_source.h"
 #include "client_lib/follow/nodes.h"
+#include "client_lib/follow/smaller_choice.h"
 #include "client_lib/geometry/snap.h"
 #include "common/glstate/projection.h"
 
@@ -50,6 +51,7 @@ private:
         std::unordered_set<std::size_t> blocks, before;  ///< hashes of its blocks, and of the last frame's
     };
     float bound() const;
+    bool is_wanted();
     bool repeats() const { return 2 * repeated_ >= bytes_; }
     bool begin_transformation(const glstate::Projection& projection, const ClientSurface& surface, float pixels);
     void count(const Snapped& snapped) const;
@@ -57,6 +59,7 @@ private:
     Nodes& nodes_;
     const std::optional<float> asked_;
     float allowed_ = 0;
+    SmallerChoice choice_;
     std::unordered_map<SurfaceId, Frame> frames_;
 
     // Of the transformation of the last block.
