@@ -67,11 +67,18 @@ def check(of: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dic
     return rows
 
 
-def scaled(of: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dict]:
+def costs_of_large_march(known: Costs) -> Costs:
+    """It has more of what march has."""
+    name = large_march().name
+    return dataclasses.replace(known, draw=known.draw | {name: known.draw["march"]},
+                               processors=known.processors | {name: known.processors["march"]})
+
+
+def scaled(_: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dict]:
     """W4.2's figure of March: measured on walls that this machine can have, foretold for all."""
-    subject = next(s for s in of if s.name == "march")
-    print(f"\nmarch at {SCALED_MEGABITS} Mbit/s, frames a second: on this machine, measured and foretold, and foretold "
-          f"with a machine for each tile")
+    subject, known = large_march(), costs_of_large_march(known)
+    print(f"\n{subject.what}, at {SCALED_MEGABITS} Mbit/s, frames a second: on this machine, measured and foretold, "
+          f"and foretold with a machine for each tile")
     print(f"{'tiles':10}{'measured':>10}{'foretold':>10}{'machines':>10}{'of 1x1':>8}")
     rows: list[dict] = []
     for nodes, tiles in SCALED.items():
@@ -106,8 +113,7 @@ def grown(of: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dic
 
 def parallel(_: list[Subject], known: Costs, folder: Path, x: XServer) -> list[dict]:
     """A7.4, figure 11: G processes and R render nodes on 100 Mbit/s."""
-    subject = large_march()
-    known = dataclasses.replace(known, draw=known.draw | {subject.name: known.draw["march"]})
+    subject, known = large_march(), costs_of_large_march(known)
     print("\nforetold, beside figure 11 of AnyGL: frames a second of a parallel program of G processes (rows) on R "
           "nodes\n(columns), 100 Mbit/s, a machine for each")
     print(f"{'':6}" + "".join(f"{nodes:>9}" for nodes in PROCESSES))

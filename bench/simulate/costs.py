@@ -74,7 +74,7 @@ class Trial:
 
 
 def trials(of: list[Subject], folder: Path, x: XServer) -> list[Trial]:
-    return [Trial(subject, count(subject, (nodes, 1), folder, x), measure(subject, nodes, 0, x)) for subject in of
+    return [Trial(subject, count(subject, (nodes, 1), folder, x), measure(subject, (nodes, 1), 0, x)) for subject in of
             for nodes in ((1, 2, 4) if subject.in_pieces else (1, 2))]
 
 

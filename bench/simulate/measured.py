@@ -27,6 +27,17 @@ ONE_THREAD = {"LP_NUM_THREADS": "0"}  # llvmpipe in the node's own thread
 UNCODED = {"WALLGL_CODING": "0"}
 
 
+class TileWall(MachineWall):
+    """A host for each tile."""
+
+    @property
+    def node_names(self) -> list[str]:
+        return [f"node-{tile}" for tile in self.tile_names]
+
+    def tiles_of(self, node: str) -> list[str]:
+        return [node.removeprefix("node-")]
+
+
 class StatusLink:
     """walld's HTTP from here, though it listens in its host's network only. One connection, so that looking costs
     little."""
@@ -43,8 +54,8 @@ class StatusLink:
 
 def measure(subject: Subject, tiles: tuple[int, int], megabits: int, x: XServer) -> Rates:
     """`megabits`: a second, to and from each host; 0: no limit."""
-    with MachineWall(tiles, TILE, clients=[DESK], name="measure", swap_timeout_ms=NO_LIMIT_MS,
-                     environment=ONE_THREAD) as wall:
+    with TileWall(tiles, TILE, clients=[DESK], name="measure", swap_timeout_ms=NO_LIMIT_MS,
+                  environment=ONE_THREAD) as wall:
         for host in (DESK, *wall.node_names) if megabits else ():
             wall.hosts.limit(host, f"{megabits}mbit")
         status = StatusLink(wall)

@@ -26,14 +26,13 @@ std::array<float, 2> scale_of(const SurfaceLayout& layout) {
 Snapping::Snapping(Nodes& nodes, std::optional<float> asked) : nodes_(nodes), asked_(asked) {
     nodes_.before_sending([this] {
         if (parts_.empty()) return;
-        // More blocks may come.
-        exact_ = repeats();
-        reach_ = kInAnyCase;
+        reach_ = kInAnyCase;  // more blocks may come
         settle();
     });
 }
 
-float Snapping::bound() const { return std::min(asked_.value_or(allowed_), allowed_); }
+/// The processes of a parallel program would have to be of one mind: what they draw may have edges in common.
+float Snapping::bound() const { return parallel() ? 0 : std::min(asked_.value_or(allowed_), allowed_); }
 
 /// In the next frame.
 bool Snapping::is_wanted() {
@@ -80,7 +79,7 @@ bool Snapping::begin_transformation(const glstate::Projection& projection, const
     // What is kept of a hidden part is a copy.
     reach_ = surface.hidden ? kInAnyCase : 0;
     bytes_ = repeated_ = 0;
-    exact_ = false;
+    exact_.reset();
     return grid_.has_value();
 }
 
@@ -102,8 +101,9 @@ std::optional<glstate::Projection> Snapping::before_block(const DrawSource& sour
     frame.blocks.insert(hash);
     bytes_ += operands.size();
     if (frame.before.contains(hash)) repeated_ += operands.size();
-    if (exact_) return std::nullopt;
+    if (exact_.value_or(false)) return std::nullopt;
     if (reach_ == kInAnyCase) {
+        exact_ = false;
         count(client::snap(packer, {}, packer.mark(), *grid_, reach_, options().count_ideal));
     } else {
         reach_ = std::max(reach_, reach_behind(packer, *grid_));
@@ -120,7 +120,9 @@ std::optional<glstate::Projection> Snapping::before_block(const DrawSource& sour
 }
 
 void Snapping::settle() {
-    if (exact_ || repeats()) return parts_.clear();
+    if (parts_.empty()) return;
+    if (!exact_) exact_ = repeats();
+    if (*exact_) return parts_.clear();
     Snapped all;
     for (const PackedPart& part : parts_) {
         Node& node = nodes_[part.node];
@@ -130,7 +132,7 @@ void Snapping::settle() {
         all.farthest = std::max(all.farthest, one.farthest);
     }
     parts_.clear();
-    if (all.vertices != 0) count(all);
+    count(all);
 }
 
 void Snapping::count(const Snapped& snapped) const {

@@ -22,6 +22,7 @@
 #include "client_lib/follow/nodes.h"
 #include "client_lib/follow/smaller_choice.h"
 #include "client_lib/geometry/snap.h"
+#include "client_lib/link/parallel.h"
 #include "common/glstate/projection.h"
 
 namespace wall::client {
@@ -69,7 +70,7 @@ private:
     std::optional<SnapGrid> grid_;
     float reach_ = 0;                       ///< infinity: the grid that is right in any case
     std::size_t bytes_ = 0, repeated_ = 0;  ///< of its blocks, and of those that came in the last frame, too
-    bool exact_ = false;                    ///< it stays as it is
+    std::optional<bool> exact_;             ///< it stays as it is; none: that is not decided
     bool holds_ = false;                    ///< the last block is one of `parts_`
     std::vector<PackedPart> parts_;
 };

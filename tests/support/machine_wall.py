@@ -41,6 +41,10 @@ class MachineWall(Wall):
         """Each is also the name of its host."""
         return [f"node-{column}" for column in range(self.tiles[0])]
 
+    def tiles_of(self, node: str) -> list[str]:
+        """Those of a column, from the top."""
+        return [f"{node.removeprefix('node-')}-{row}" for row in range(self.tiles[1])]
+
     def listen_address(self, node: str) -> str:
         """One says where exactly it listens; walld sees where the others are."""
         return f"{self.hosts.address(node) if node == self.node_names[0] else '0.0.0.0'}:{DATA_PORT}"
@@ -58,8 +62,7 @@ class MachineWall(Wall):
         nodes = "".join(f"[[node]]\nname = {quoted(name)}\nbackend = {quoted(self.backend)}\n"
                         f"listen = {quoted(self.listen_address(name))}\n"
                         + (f"gpus = {self.gpus[name]}\n" if name in self.gpus else "") + self.node_keys + "\n"
-                        + "".join(self._tile(f"{column}-{row}") for row in range(self.tiles[1]))
-                        for column, name in enumerate(self.node_names))
+                        + "".join(map(self._tile, self.tiles_of(name))) for name in self.node_names)
         return (f"[wall]\nname = {quoted(self.name)}\nswap_timeout_ms = {self.swap_timeout_ms}\n"
                 f"state_directory = {quoted(str(self.state_of(WALLD)))}\n{self.options}\n"
                 f"[people]\n{self.people}\n[control]\nlisten = {quoted(control)}\n"
