@@ -155,9 +155,8 @@ PARTS = {"check": check, "scaled": scaled, "grown": grown, "parallel": parallel,
 
 def picture_of_scaled(rows: list[dict]) -> str:
     first = rows[0]["machines"]
-    lines = [Line("foretold, a machine each", [(row["nodes"], row["machines"]) for row in rows]),
-             Line("foretold, here", [(row["nodes"], row["foretold"]) for row in rows]),
-             Line("measured, here", [(row["nodes"], row["measured"]) for row in rows if row["measured"]]),
+    lines = [Line("foretold", [(row["nodes"], row["machines"]) for row in rows]),
+             Line("measured", [(row["nodes"], row["measured"]) for row in rows if row["measured"]]),
              Line("WireGL's share", [(1, first), (rows[-1]["nodes"], WIREGL * first)])]
     return chart(f"march, {SCALED_MEGABITS} Mbit/s: measured, and foretold", "tiles", "frames a second", lines,
                  {row["nodes"]: row["tiles"] for row in rows})
