@@ -19,7 +19,7 @@ struct Launch {
     std::string stereo;  ///< "PERCENT", "PERCENT,DISTANCE" or nothing
     bool sort_last = false;
     std::string lossy_pixels;  ///< a number or nothing
-    std::string camera;  ///< names of uniforms, with commas between them, or nothing
+    std::string camera;        ///< names of uniforms, with commas between them, or nothing
 };
 
 /// Where the vendor libraries are: beside this program's own installation.
