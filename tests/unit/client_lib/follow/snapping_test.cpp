@@ -17,8 +17,8 @@ void GLAPIENTRY gl_entry_Vertex3f(GLfloat x, GLfloat y, GLfloat z);
 
 namespace {
 
-constexpr NodeIndex kNode(0);
-constexpr float kPixels = 0.25f;
+constexpr NodeIndex kSnappingNode(0);
+constexpr float kSnapBound = 0.25f;
 constexpr std::array kAhead{1.2345678f, 2.3456789f, -60.123456f}, kBehind{0.1234567f, 0.2345678f, 5.123456f};
 
 struct DrawsNothing final : UsedObjects {
@@ -29,7 +29,7 @@ class SnappingTest : public testing::Test {
 protected:
     SnappingTest() {
         std::thread node_side([this] { EXPECT_TRUE(fake_.welcome([] {})); });
-        const std::vector<NodeInfo> infos{{kNode, fake_.listener.address(), "ticket", 1, true, false, true}};
+        const std::vector<NodeInfo> infos{{kSnappingNode, fake_.listener.address(), "ticket", 1, true, false, true}};
         nodes_.connect_and_wait(infos);
         node_side.join();
         surface_.layout.width = surface_.layout.height = 100;
@@ -51,29 +51,30 @@ protected:
         const DrawTarget target(surface_);
         const DrawSource source{ContextId(1), state_, target, target, used_, objects_, share_};
         snapping_.before_block(source, packer_, camera_);
-        Node& node = nodes_[kNode];
+        Node& node = nodes_[kSnappingNode];
         wire::PackBuffer& batch = nodes_.batch(node, ContextId(1));
         const auto first = batch.mark();
         batch.append(packer_, {}, packer_.mark());
-        if (auto* const packed = snapping_.packed()) packed->push_back({kNode, node.batches, first, batch.mark()});
+        if (auto* const packed = snapping_.packed())
+            packed->push_back({kSnappingNode, node.batches, first, batch.mark()});
         packer_.reset();
         return first.operand_bytes + sizeof(std::uint32_t);  // behind Begin's mode
     }
     std::array<float, 3> vertex_at(std::size_t offset) {
         std::array<float, 3> out{};
-        std::memcpy(out.data(), nodes_[kNode].batch.operand_at(offset), sizeof out);
+        std::memcpy(out.data(), nodes_[kSnappingNode].batch.operand_at(offset), sizeof out);
         return out;
     }
     std::array<float, 3> snapped(const std::array<float, 3>& v, float reach) const {
         std::array<float, 4> out{};
-        const auto grid = SnapGrid::make(camera_, {1, 1}, kPixels);
+        const auto grid = SnapGrid::make(camera_, {1, 1}, kSnapBound);
         _mm_storeu_ps(out.data(), grid->snapped(_mm_setr_ps(v[0], v[1], v[2], 1), reach));
         return {out[0], out[1], out[2]};
     }
 
     FakeNode fake_{"snapping"};
     Nodes nodes_{{[](Node&) {}, [] {}, [] {}, [] {}}};
-    Snapping snapping_{nodes_, kPixels};
+    Snapping snapping_{nodes_, kSnapBound};
     ClientSurface surface_{SurfaceId(1), {}};
     glstate::Projection camera_;
     glstate::State state_;
@@ -103,7 +104,7 @@ TEST_F(SnappingTest, EachTransformationHasItsOwn) {
 
 TEST_F(SnappingTest, WhatMustGoGetsWhatIsRightInAnyCase) {
     draw(kAhead, kAhead);
-    nodes_.send(nodes_[kNode]);
+    nodes_.send(nodes_[kSnappingNode]);
     const auto sent = fake_.receive();
     const auto batch = wire::split_batch(sent.payload);
     ASSERT_TRUE(batch);
@@ -128,10 +129,11 @@ TEST_F(SnappingTest, WhatComesAgainStays) {
 TEST_F(SnappingTest, LeavesABatchAloneThatIsAnotherOne) {
     draw(kAhead, kAhead);
     nodes_.distrust();
-    nodes_[kNode].batch.append(0, 64);
-    const std::vector<std::byte> before(nodes_[kNode].batch.operands().begin(), nodes_[kNode].batch.operands().end());
+    nodes_[kSnappingNode].batch.append(0, 64);
+    const std::vector<std::byte> before(nodes_[kSnappingNode].batch.operands().begin(),
+                                        nodes_[kSnappingNode].batch.operands().end());
     snapping_.settle();
-    EXPECT_TRUE(std::ranges::equal(nodes_[kNode].batch.operands(), before));
+    EXPECT_TRUE(std::ranges::equal(nodes_[kSnappingNode].batch.operands(), before));
 }
 
 TEST_F(SnappingTest, NothingMovesWhereTheWallAllowsNothing) {
