@@ -74,9 +74,9 @@ public:
     /// The node's batch, set to this context (earlier commands of another one are sent first).
     wire::PackBuffer& batch(Node& node, ContextId context);
     void send(Node& node);
-    /// Called before a batch is sent, if something is said of `more`: what is to be packed with others is not sent
-    /// until there is more of it than usual.
+    /// Called before a batch is sent while hold_more(true) holds.
     void before_sending(std::function<void()> call) { before_sending_ = std::move(call); }
+    /// Batches are sent when there is more in them than usual: what they hold may still be changed.
     void hold_more(bool more) { holds_more_ = more; }
     /// Those that record and have asked for it have nothing any more: a file can be read from there on (T7.1). Between
     /// two frames. Whether there are such.

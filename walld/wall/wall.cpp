@@ -202,8 +202,7 @@ Outcome<void> Wall::check_lossy(float pixels) const {
     std::ostringstream text;
     text << "the program asks for vertices that lie up to " << pixels << " pixels off, and the wall allows "
          << config_.lossy_pixels
-         << "; expected at most that ('--lossy-pixels' of wallrun), or more in 'lossy_pixels' in "
-         << "[wall] of wall.toml";
+         << "; expected at most that ('--lossy-pixels' of wallrun), or more in 'lossy_pixels' in [wall] of wall.toml";
     return walld::refuse(RefusalKind::forbidden, text.str());
 }
 
@@ -218,7 +217,9 @@ Outcome<void> Wall::check(const proto::ClientHello& hello) const {
                              "the wall is full: " + std::to_string(config_.max_sessions) +
                                  " programs are on it ('max_sessions' in [wall] of wall.toml)");
     }
-    if (auto allowed = check_lossy(hello.lossy_pixels()); !allowed) return allowed;
+    // One that comes back is not lost where less is allowed by now: its library keeps to what the welcome says.
+    if (auto allowed = check_lossy(hello.lossy_pixels()); !allowed)
+        if (!hello.has_resume() || allowed.error().kind == RefusalKind::invalid) return allowed;
     if (hello.has_rect()) {
         if (auto possible = check_place(config_.canvas(), from_proto(hello.rect())); !possible)
             return tl::unexpected(possible.error());
@@ -245,7 +246,8 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     session.owner = std::move(owner);
     session.held = hello.hold();
     session.sort_last = hello.sort_last() || (config_.sort_last_measured && !session.group);
-    session.lossy_pixels = hello.has_lossy_pixels() ? hello.lossy_pixels() : config_.lossy_pixels;
+    session.lossy_pixels = config_.lossy_pixels;
+    if (hello.has_lossy_pixels()) session.lossy_pixels = std::min(session.lossy_pixels, hello.lossy_pixels());
     if (hello.has_stereo() && !session.group) session.stereo = checked(hello.stereo());
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
     session.fullscreen = hello.fullscreen();
