@@ -53,6 +53,7 @@ void BlockSender::run() {
         return note_content(source_);
     }
     followers_.dealer.compose(source_.draw);
+    followers_.updater.prepare_all(nodes, source_);
     const bool single = packer_.primitives().size() == 1 && !may_be_divided(packer_.primitives()[0]);
     const bool whole = packer_.has_rare() || everywhere || single || source_.draw.of_objects();
     if (nodes.size() <= 1 || whole) send_whole(nodes);

@@ -49,7 +49,8 @@ struct Deal {
         double elements = 0;
         Fence answer;
     };
-    std::vector<Hand> hands;  ///< by node, in the order in which they draw
+    std::vector<Hand> hands;             ///< by node, in the order in which they draw
+    std::vector<NodeIndex> compositors;  ///< that put together what they have drawn; none: who shows it does
     /// Layers that what was dealt will be composed in; a block for them names them by their places here.
     std::vector<TargetLayer> receivers;
     bool open = false;                 ///< something was dealt and not composed

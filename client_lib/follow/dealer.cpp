@@ -2,6 +2,7 @@
 #include "client_lib/follow/dealer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -16,7 +17,38 @@ namespace {
 
 /// Of a window; so many a node reads back and sends.
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 24;
+constexpr std::uint32_t kFirstBand = wire::kMaxTilesPerNode;  ///< names of bands are no tiles'
 constexpr double kWaits = 0.5;  ///< share of its time that a program waits for nodes whose drawing holds it up
+
+/// Each node that composes has rows of every layer, of about as many pixels: what lies in the middle of a window is
+/// shared as well.
+geom::Rect band_of(const geom::Rect& layer, std::size_t number, std::size_t count) {
+    const auto row = [&](std::size_t at) { return static_cast<int>(layer.height * at / count); };
+    return {layer.x, layer.y + row(number), layer.width, row(number + 1) - row(number)};
+}
+
+std::uint32_t name_of_band(std::size_t layer, std::size_t number, std::size_t count) {
+    return kFirstBand + static_cast<std::uint32_t>(layer * count + number);
+}
+
+/// As PartialSend and PartialCompose have it.
+void add_band(std::vector<std::uint32_t>& words, const std::array<std::uint32_t, 3>& what, const geom::Rect& area) {
+    words.insert(words.end(), what.begin(), what.end());
+    for (const int value : {area.x, area.y, area.width, area.height})
+        words.push_back(static_cast<std::uint32_t>(value));
+}
+
+/// Of those who draw.
+std::vector<std::uint32_t> bands_of(const Deal& deal, std::span<const NodeIndex> compositors) {
+    std::vector<std::uint32_t> words;
+    for (std::size_t layer = 0; layer < deal.receivers.size(); ++layer)
+        for (std::size_t i = 0; i < compositors.size(); ++i)
+            add_band(
+                words,
+                {static_cast<std::uint32_t>(layer), compositors[i].value, name_of_band(layer, i, compositors.size())},
+                band_of(deal.receivers[layer].pixels, i, compositors.size()));
+    return words;
+}
 
 }  // namespace
 
@@ -42,11 +74,14 @@ void Dealer::choose(ClientSurface& surface) {
     Deal& deal = surface.deal;
     deal.chosen = true;
     deal.hands.clear();
+    deal.compositors.clear();
     if (!may_deal(surface)) return;
     std::vector<NodeIndex> render;
     for (const auto& node : nodes_)
         if (node->info.renders && node->answers() && !node->slow) render.push_back(node->index);
     if (group_ && !render.empty()) render = {render[group_->rank % render.size()]};
+    for (const auto& node : nodes_)
+        if (node->info.composes && node->answers() && !node->slow) deal.compositors.push_back(node->index);
     hear_paces(deal);
     const std::vector<double> ends = deal.paces.ends(render);
     for (std::size_t i = 0; i < render.size(); ++i) deal.hands.push_back({render[i], ends[i]});
@@ -148,20 +183,29 @@ void Dealer::compose(ClientSurface& surface) {
     Deal& deal = surface.deal;
     if (!std::exchange(deal.open, false)) return take_held_semaphores();
     ++deal.sequence;
-    std::vector<std::uint32_t> from;
+    std::vector<std::uint32_t> drawn;
+    for (Deal::Hand& hand : deal.hands)
+        if (hand.drew && nodes_[hand.node].alive()) drawn.push_back(hand.node.value);
+    const auto compositors = compositors_of(deal, drawn.size());
+    const std::vector<std::uint32_t> bands = bands_of(deal, compositors);
     for (Deal::Hand& hand : deal.hands) {
         if (!std::exchange(hand.drew, false) || !nodes_[hand.node].alive()) continue;
-        from.push_back(hand.node.value);
         Node& node = nodes_[hand.node];
         const RequestId request = nodes_.next_request();
         glapi::pack::PartialSend(nodes_.batch(node, node.batch_context), surface.id, deal.sequence, hand.node.value,
-                                 request);
+                                 request, std::as_bytes(std::span(bands)));
         nodes_.send(node);
         deal.asked.push_back({hand.node, std::exchange(hand.elements, 0), {}});
         deal.asked.back().answer.add(node.stream, request);
     }
     take_held_semaphores();
-    if (from.empty()) return;
+    if (drawn.empty()) return;
+    compose_by(compositors, surface, drawn);
+    std::vector<std::uint32_t> from = drawn;
+    if (!compositors.empty()) {
+        from.clear();
+        for (const NodeIndex node : compositors) from.push_back(node.value);
+    }
     const DrawTarget target(surface);
     for (const auto& [index, slots] : nodes_touched(deal.receivers, std::nullopt)) {
         Node& node = nodes_[index];
@@ -170,6 +214,38 @@ void Dealer::compose(ClientSurface& surface) {
         target.describe_to(node);
         glapi::pack::PartialMerge(buffer, surface.id, deal.sequence, deal.by, static_cast<std::uint32_t>(slots),
                                   static_cast<std::uint32_t>(slots >> 32), std::as_bytes(std::span(from)));
+    }
+}
+
+/// Where only one has drawn there is nothing to put together.
+std::vector<NodeIndex> Dealer::compositors_of(const Deal& deal, std::size_t drawn) const {
+    std::vector<NodeIndex> out;
+    if (drawn < 2) return out;
+    int rows = deal.receivers.front().pixels.height;
+    for (const TargetLayer& layer : deal.receivers) rows = std::min(rows, layer.pixels.height);
+    for (const NodeIndex node : deal.compositors)
+        if (nodes_[node].alive() && static_cast<int>(out.size()) < rows) out.push_back(node);
+    return out;
+}
+
+/// Behind what they have drawn themselves.
+void Dealer::compose_by(std::span<const NodeIndex> compositors, ClientSurface& surface,
+                        std::span<const std::uint32_t> drawn) {
+    const Deal& deal = surface.deal;
+    for (std::size_t i = 0; i < compositors.size(); ++i) {
+        std::vector<std::uint32_t> words(drawn.begin(), drawn.end());
+        for (std::size_t layer = 0; layer < deal.receivers.size(); ++layer) {
+            const TargetLayer& to = deal.receivers[layer];
+            const auto name = name_of_band(layer, i, compositors.size());
+            add_band(words, {name, to.node.value, to.slot}, band_of(to.pixels, i, compositors.size()));
+        }
+        Node& node = nodes_[compositors[i]];
+        const DrawTarget target(surface);
+        wire::PackBuffer& buffer = nodes_.batch(node, node.batch_context);
+        target.describe_to(node);
+        glapi::pack::PartialCompose(buffer, surface.id, deal.sequence, deal.by, node.index.value,
+                                    static_cast<std::uint32_t>(drawn.size()), std::as_bytes(std::span(words)));
+        nodes_.send(node);
     }
 }
 

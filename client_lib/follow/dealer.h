@@ -65,6 +65,9 @@ private:
     static void hear_paces(Deal& deal);
     std::vector<TargetLayer> receivers_of(const ClientSurface& surface) const;
     void cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t pieces);
+    std::vector<NodeIndex> compositors_of(const Deal& deal, std::size_t drawn) const;
+    void compose_by(std::span<const NodeIndex> compositors, ClientSurface& surface,
+                    std::span<const std::uint32_t> drawn);
     static void pack_begin(wire::PackBuffer& buffer, const ClientSurface& surface);
 
     Nodes& nodes_;

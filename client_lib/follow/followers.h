@@ -96,7 +96,9 @@ void draw_on(const Followers& followers, const DrawSource& source, const Drawn& 
         count(*part.node, NodeCounter::geometry_bytes, buffer.bytes() - bytes);
         after(*part.node);
     }
-    for (const auto& [index, slots] : nodes.touched(source.draw.layers(), reach)) {
+    const NodeMasks& touched = nodes.touched(source.draw.layers(), reach);
+    if (dealt.empty()) updater.prepare_all(touched, source);
+    for (const auto& [index, slots] : touched) {
         Node& node = nodes[index];
         if (!source.draw.goes_to(node) || (!dealt.empty() && !node.records())) continue;
         wire::PackBuffer& buffer = updater.prepare(node, source, needs);

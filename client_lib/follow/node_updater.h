@@ -4,6 +4,7 @@
 #pragma once
 
 #include "client_lib/follow/draw_source.h"
+#include "client_lib/follow/hand_on.h"
 #include "client_lib/follow/nodes.h"
 #include "client_lib/geometry/needs.h"
 
@@ -12,13 +13,17 @@ namespace wall::client {
 class NodeUpdater {
 public:
     /// `nodes` outlives it.
-    explicit NodeUpdater(Nodes& nodes) : nodes_(nodes) {}
+    explicit NodeUpdater(Nodes& nodes) : nodes_(nodes), hand_on_(nodes) {}
+
+    /// Before it is called for each of these: what they lack alike.
+    void prepare_all(const NodeMasks& nodes, const DrawSource& source) { hand_on_.bring(nodes, source); }
 
     /// The node's batch after everything that drawing with this context needs: targets, objects, state.
     wire::PackBuffer& prepare(Node& node, const DrawSource& source, const Needs& needs = {});
 
 private:
     Nodes& nodes_;
+    HandOn hand_on_;
     std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time
 };
 

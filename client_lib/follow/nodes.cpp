@@ -17,6 +17,8 @@ constexpr std::size_t kBatchBytes =
 
 constexpr std::size_t kHeldBatchBytes = 16 << 20;  // the same of what waits for more; still one that can be coded
 
+constexpr const char* kNotHandedOn = "another node could not hand on what it was to get";
+
 constexpr PixelRect kEverything{-1e9f, -1e9f, 1e9f, 1e9f};
 
 }  // namespace
@@ -31,7 +33,10 @@ Node& Nodes::at(NodeIndex index) {
 
 /// A node at time zero: whatever it needs is sent when it needs it.
 void Nodes::forget(Node& node) {
-    if (node.stream) transport_.remove(node.stream.get());
+    if (node.stream) {
+        transport_.remove(node.stream.get());
+        for (const auto& stream : handing_on_->lost(node.stream)) stream->give_up(kNotHandedOn);
+    }
     node.stream.reset();
     find_everywhere();
     forget_content(node);
@@ -81,7 +86,7 @@ void Nodes::connect(const NodeInfo& info) {
 
 bool Nodes::goes_on(const NodeInfo& info) {
     Node& node = at(info.node);
-    const bool same = info.up && node.alive() && node.info.ticket == info.ticket;
+    const bool same = info.up && (node.alive() || node.attempt) && node.info.ticket == info.ticket;
     if (same) node.info = info;
     return same;
 }
@@ -143,6 +148,7 @@ void Nodes::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream)
     find_everywhere();
     if (group_) node.stream->never_stalls();
     node.stream->count_for(node.index);
+    node.stream->on_parcel(on_parcel(node.index));
     transport_.add(node.stream);
     events_.opened(node);
 }
@@ -153,6 +159,33 @@ void Nodes::take_attempt(Node& node) {
     if (!outcome) return;
     node.attempt.reset();
     adopt_stream(node, std::move(*outcome));
+}
+
+void Nodes::hand_on(std::span<Node* const> route, ContextId context, wire::PackBuffer commands) {
+    std::vector<HandingOn<NodeStream>::Stop> stops;
+    std::vector<NodeIndex> names;
+    for (Node* node : route) {
+        send(*node);
+        stops.push_back({node->index, node->stream});
+        names.push_back(node->index);
+        stats().add_node(node->index, node == route.front() ? NodeCounter::batches : NodeCounter::handed_bytes,
+                         node == route.front() ? 1 : commands.bytes());
+    }
+    const std::uint32_t number = handing_on_->begin(std::move(stops));
+    for (std::size_t i = 1; i < route.size(); ++i) route[i]->stream->await_parcel(number, names[i - 1]);
+    route.front()->stream->send_parcel(number, std::move(names), context, std::move(commands));
+    transport_.wake();
+}
+
+/// Those that wait for what does not come begin anew, as nodes that come late. The transport's thread.
+NodeStream::OnParcel Nodes::on_parcel(NodeIndex node) const {
+    return [handing_on = handing_on_, node](std::uint32_t number, std::optional<NodeIndex> missed) {
+        if (!missed) return handing_on->handed_on(number);
+        const auto stopped = handing_on->not_handed_on(number, *missed, std::chrono::steady_clock::now());
+        if (stopped.empty()) return;
+        log(LogLevel::warn, "event=not_handed_on node=%u to=%u", node.value, missed->value);
+        for (const auto& stream : stopped) stream->give_up(kNotHandedOn);
+    };
 }
 
 // The stream has failed, whatever the node does. What it held of this process is gone with it.

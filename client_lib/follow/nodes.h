@@ -12,11 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "client_lib/follow/handing_on.h"
 #include "client_lib/follow/kept_content.h"
 #include "client_lib/follow/node.h"
 #include "client_lib/geometry/target_layers.h"
 #include "client_lib/link/parallel.h"
 #include "client_lib/link/transport.h"
+#include "client_lib/process/options.h"
 
 namespace wall::client {
 
@@ -47,13 +49,14 @@ public:
     // ---- streams ----
     /// As whose nodes they are spoken to.
     void set_session(SessionId session) { session_ = session; }
-    /// Whether the node, as walld names it now, is the one to which there is a stream: it keeps what it has.
+    /// Whether the node, as walld names it now, is the one to which there is a stream, or soon is: it keeps what it
+    /// has.
     bool goes_on(const NodeInfo& info);
     /// The node, as walld names it now, is another one than before: what it held is gone.
     void connect(const NodeInfo& info);
-    /// Of a walld that came back: nodes that it does not have any more go.
     /// The wall is another one: nothing is left of these nodes.
     void forget_all();
+    /// Of a walld that came back: nodes that it does not have any more go.
     void forget_others(const Welcome& welcome);
     /// The same as connect() for several at once, but for those that are connected to that very process; waits until
     /// something has come of each, with the lock held.
@@ -78,6 +81,17 @@ public:
     void before_sending(std::function<void()> call) { before_sending_ = std::move(call); }
     /// Batches are sent when there is more in them than usual: what they hold may still be changed.
     void hold_more(bool more) { holds_more_ = more; }
+    // ---- parcels (common/wire/parcel.h) ----
+    /// Whether there may be nodes that hand on to each other.
+    bool hand_on() const { return handing_on_->open(std::chrono::steady_clock::now()); }
+    /// Whether it may be one of a route.
+    static bool may_hand_on(const Node& node) {
+        return node.info.hands_on && node.answers() && !node.slow && node.stream->over_link();
+    }
+    /// Sends it to the first of them, which hands it on, behind all that was packed for any of them. At least two, all
+    /// of which may.
+    void hand_on(std::span<Node* const> route, ContextId context, wire::PackBuffer commands);
+
     /// Those that record and have asked for it have nothing any more: a file can be read from there on (T7.1). Between
     /// two frames. Whether there are such.
     bool begin_recordings_again();
@@ -107,6 +121,7 @@ private:
     void adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream);
     void keep_connected(Node& node);
     void lose(Node& node);
+    NodeStream::OnParcel on_parcel(NodeIndex node) const;
     void forget(Node& node);
     static void forget_content(Node& node);
     void find_everywhere();
@@ -118,6 +133,8 @@ private:
     std::vector<TargetLayer> everywhere_;
     KeptContents kept_;
     SessionId session_;
+    const std::shared_ptr<HandingOn<NodeStream>> handing_on_ =
+        std::make_shared<HandingOn<NodeStream>>(options().hand_on);
     bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
     RequestId last_request_;
     std::function<void()> before_sending_;

@@ -12,12 +12,8 @@
 namespace wall::client {
 namespace {
 
-constexpr std::size_t kObjectBatchBytes = std::size_t{4} << 20;  // a batch of objects is sent when it reaches this
-constexpr int kDrawnLimitMs = 5000;                              // a node answers behind all that it has to draw before
+constexpr int kDrawnLimitMs = 5000;     // a node answers behind all that it has to draw before
 constexpr int kQuestionLimitMs = 1500;  // the node may be waiting for another program that is sending this very content
-
-/// Whether an answer can be expected soon.
-bool may_be_asked(const Node& node) { return node.answers() && !node.slow && !node.asks_unanswered; }
 
 /// Packs the object's drawn content, as the node has it. False: the node does not answer.
 bool ask_drawn(Nodes& nodes, Node& holder, const Object& object, wire::PackBuffer& out,
@@ -115,8 +111,6 @@ bool ObjectSender::send_kept(const Object& object) {
     return true;
 }
 
-/// One short round trip, for which the session's mutex stays taken. True: the node has the object now. False: send it;
-/// the node then keeps it for others, too, whether its answer was that or came too late.
 bool ObjectSender::held(const Object& object) {
     const auto pack = [&](wire::PackBuffer& batch, RequestId request) {
         object.pack_question(batch, request);

@@ -13,6 +13,12 @@
 
 namespace wall::client {
 
+/// A batch of objects is sent when it reaches this, bytes.
+inline constexpr std::size_t kObjectBatchBytes = std::size_t{4} << 20;
+
+/// Whether the node can be expected to answer a question about content soon.
+inline bool may_be_asked(const Node& node) { return node.answers() && !node.slow && !node.asks_unanswered; }
+
 /// Packs what one node lacks into its batch.
 class ObjectSender {
 public:
@@ -22,9 +28,12 @@ public:
     void send(const Object& object);
     /// Of all objects together, also those that are on their way.
     std::size_t bytes() const { return sent_ + buffer_.bytes() - start_; }
+    /// Asks a node that may_be_asked() and has nothing of the object. One short round trip, for which the session's
+    /// mutex stays taken. True: it has found all of it among what other programs have brought. False: send it; the node
+    /// then keeps it for others, too, whether its answer was that or came too late.
+    bool held(const Object& object);
 
 private:
-    bool held(const Object& object);
     void fetch(const Object& object, bool again);
     /// False: it does not answer.
     bool fetch_from(Node& holder, const Object& object);

@@ -213,6 +213,8 @@ NodeInfo read_node(pbf_reader in, bool up) {
             case 4: node.incarnation = read_u32(in); break;
             case 6: node.records = read_u32(in) != 0; break;
             case 7: node.renders = read_u32(in) != 0; break;
+            case 8: node.hands_on = read_u32(in) != 0; break;
+            case 9: node.composes = read_u32(in) != 0; break;
             default: in.skip();
         }
     }

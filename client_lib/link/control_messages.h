@@ -66,6 +66,8 @@ struct NodeInfo {
     bool up = true;                 ///< false: only `node` means anything
     bool records = false;           ///< it keeps in a file what comes: it shows nothing and answers nothing
     bool renders = false;           ///< of a sort-last session: it may draw what other nodes show
+    bool composes = false;          ///< of a sort-last session: it may compose what other nodes draw
+    bool hands_on = false;          ///< what goes to several such nodes may go to one of them, which hands it on
 };
 
 struct TileInfo {

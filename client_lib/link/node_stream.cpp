@@ -60,18 +60,51 @@ void NodeStream::wait(std::unique_lock<std::mutex>& lock, int timeout_ms, Done&&
     else changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), done);
 }
 
-void NodeStream::send(ContextId context, wire::PackBuffer batch) {
-    if (batch.empty() || failed()) return;
+NodeStream::Outgoing NodeStream::outgoing(ContextId context, wire::PackBuffer batch) {
     const std::size_t padding = wire::padded4(batch.commands()) - batch.commands();
     const wire::BatchHeader header{context, static_cast<std::uint32_t>(batch.commands()),
                                    static_cast<std::uint32_t>(batch.operand_bytes())};
     Outgoing out;
-    out.lead = {};
     std::memcpy(out.lead.data(), &header, sizeof header);
     out.lead_bytes = sizeof header + padding;
     out.body = std::move(batch);
-    const std::size_t payload = out.plain_bytes = out.lead_bytes + out.body.bytes();
-    if (payload > wire::kMaxBatchPayload) return give_up("a batch is larger than one may be");  // checked before
+    out.plain_bytes = out.lead_bytes + out.body.bytes();
+    return out;
+}
+
+void NodeStream::send(ContextId context, wire::PackBuffer batch) {
+    if (batch.empty() || failed()) return;
+    Outgoing out = outgoing(context, std::move(batch));
+    if (out.plain_bytes > wire::kMaxBatchPayload)
+        return give_up("a batch is larger than one may be");  // checked before
+    out.frames = (out.plain_bytes + wire::kPartBytes - 1) / wire::kPartBytes;
+    queue(std::move(out));
+}
+
+void NodeStream::send_parcel(std::uint32_t number, std::vector<NodeIndex> route, ContextId context,
+                             wire::PackBuffer batch) {
+    if (batch.empty() || failed()) return;
+    Outgoing out = outgoing(context, std::move(batch));
+    out.kind = wire::FrameKind::parcel;
+    out.parcel.number = number;
+    out.parcel.route = std::move(route);
+    out.frames = (out.plain_bytes + wire::kParcelPiece - 1) / wire::kParcelPiece;
+    queue(std::move(out));
+}
+
+void NodeStream::await_parcel(std::uint32_t number, NodeIndex from) {
+    if (failed()) return;
+    Outgoing out;
+    out.kind = wire::FrameKind::awaited;
+    const std::array<std::uint32_t, 2> words{number, from.value};
+    std::memcpy(out.lead.data(), words.data(), sizeof words);
+    out.plain_bytes = out.lead_bytes = sizeof words;
+    out.body = wire::PackBuffer(0);
+    queue(std::move(out));
+}
+
+void NodeStream::queue(Outgoing out) {
+    const std::size_t payload = out.plain_bytes;
     out.begin_part(0);
 
     std::unique_lock lock(mutex_);
@@ -89,7 +122,7 @@ void NodeStream::send(ContextId context, wire::PackBuffer batch) {
         return;
     }
     out.first_frame = next_frame_;
-    next_frame_ += out.frames();
+    next_frame_ += out.frames;
     queued_bytes_ += payload;
     queue_.push_back(std::move(out));
 }
@@ -109,13 +142,30 @@ void NodeStream::keep(wire::PackBuffer sent) {
     spare_.push_back(std::move(sent));
 }
 
-void NodeStream::Outgoing::begin_part(std::size_t start) {
-    part_start = start;
-    part_bytes = std::min(payload_bytes() - start, wire::kPartBytes);
-    const bool last = start + part_bytes == payload_bytes();
-    const auto whole = is_coded() ? wire::FrameKind::coded : wire::FrameKind::batch;
-    frame = wire::encode_frame_header({static_cast<std::uint32_t>(part_bytes), last ? whole : wire::FrameKind::part});
+/// A parcel's are alike: it has as many once it is coded, and is smaller.
+std::size_t NodeStream::Outgoing::start_of(std::uint64_t at) const {
+    if (kind == wire::FrameKind::parcel) return static_cast<std::size_t>(payload_bytes() * at / frames);
+    return std::min(payload_bytes(), static_cast<std::size_t>(at) * wire::kPartBytes);
+}
+
+void NodeStream::Outgoing::begin_part(std::uint64_t at) {
+    part = at;
+    part_start = start_of(at);
+    part_bytes = start_of(at + 1) - part_start;
     sent = 0;
+    std::vector<std::byte> more;
+    auto frame_kind = kind;
+    if (kind == wire::FrameKind::parcel) {
+        parcel.bytes = static_cast<std::uint32_t>(payload_bytes());
+        parcel.plain_bytes = is_coded() ? static_cast<std::uint32_t>(plain_bytes) : 0;
+        parcel.offset = static_cast<std::uint32_t>(part_start);
+        more = wire::encode_parcel_lead(parcel);
+    } else if (kind == wire::FrameKind::batch) {
+        frame_kind = at + 1 < frames ? wire::FrameKind::part : is_coded() ? wire::FrameKind::coded : kind;
+    }
+    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(more.size() + part_bytes), frame_kind});
+    front.assign(header.begin(), header.end());
+    front.insert(front.end(), more.begin(), more.end());
 }
 
 std::optional<std::vector<std::byte>> NodeStream::wait_reply(RequestId request, int timeout_ms) {
@@ -207,8 +257,8 @@ NodeStream::Pieces NodeStream::pieces_of(const Outgoing& out) {
     const auto add = [&](const std::byte* from, std::size_t bytes) {
         if (bytes != 0) pieces.at[pieces.count++] = {const_cast<std::byte*>(from), bytes};
     };
-    const std::size_t head = std::min(out.sent, out.frame.size());
-    add(out.frame.data() + head, out.frame.size() - head);
+    const std::size_t head = std::min(out.sent, out.front.size());
+    add(out.front.data() + head, out.front.size() - head);
     const std::size_t at = out.part_start + (out.sent - head), end = out.part_start + out.part_bytes;
     if (out.is_coded()) return add(out.coded.data() + at, end - at), pieces;
     const std::size_t lead = std::min(at, out.lead_bytes), lead_end = std::min(end, out.lead_bytes);
@@ -221,18 +271,23 @@ NodeStream::Pieces NodeStream::pieces_of(const Outgoing& out) {
 /// Only what is kept until the node has it, and so can be sent again as it was: the node's history goes on where ours
 /// does. Streams within a machine have no link.
 bool NodeStream::may_be_coded(const Outgoing& out) const {
-    return number_ != 0 && choice_.codes() && !cannot_code_ && out.plain_bytes <= wire::kMostCodedBatch;
+    return number_ != 0 && choice_.codes() && !cannot_code_ && out.plain_bytes <= wire::kMostCodedBatch &&
+           out.kind != wire::FrameKind::awaited;
 }
 
 void NodeStream::code(Outgoing& out) {
     const auto begin = Clock::now();
-    if (!encoder_) encoder_ = wire::HistoryEncoder::create();
+    const bool is_parcel = out.kind == wire::FrameKind::parcel;  // whoever it is handed on to has no history of ours
+    std::optional<wire::HistoryEncoder> of_its_own;
+    auto& encoder = is_parcel ? of_its_own : encoder_;
+    if (!encoder) encoder = wire::HistoryEncoder::create();
     const std::array<std::span<const std::byte>, 2> pieces{std::span(out.lead.data(), out.lead_bytes),
                                                            std::span(out.body.opcodes().data(), out.body.bytes())};
     const auto plain = static_cast<std::uint32_t>(out.plain_bytes);
     const auto head = std::as_bytes(std::span(&plain, 1));
-    coding_room_.assign(head.begin(), head.end());
-    if (!encoder_ || !encoder_->encode(pieces, coding_room_)) {
+    coding_room_.clear();
+    if (!is_parcel) coding_room_.assign(head.begin(), head.end());
+    if (!encoder || !encoder->encode(pieces, coding_room_)) {
         cannot_code_ = true;
         return;
     }
@@ -249,9 +304,8 @@ bool NodeStream::write_some(Outgoing& out) {
     for (;;) {
         const Pieces pieces = pieces_of(out);
         if (pieces.count == 0) {
-            const std::size_t end = out.part_start + out.part_bytes;
-            if (end == out.payload_bytes()) return true;
-            out.begin_part(end);
+            if (out.part + 1 == out.frames) return true;
+            out.begin_part(out.part + 1);
             continue;
         }
         const auto written = ring_ ? write_ring(pieces) : write_socket(pieces);
@@ -389,6 +443,8 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
     }
     if (kind == wire::FrameKind::room) return;  // whoever has read it looks what there is to write
     if (kind == wire::FrameKind::begin_again) return begin_again_.store(true, std::memory_order_relaxed);
+    if (kind == wire::FrameKind::handed_on || kind == wire::FrameKind::not_handed_on)
+        return hear_of_parcel(kind, payload);
     if (kind == wire::FrameKind::receipt && payload.size() == sizeof(std::uint64_t)) {
         std::uint64_t frames = 0;
         std::memcpy(&frames, payload.data(), sizeof frames);
@@ -415,6 +471,17 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
     changed_.notify_all();
 }
 
+void NodeStream::hear_of_parcel(wire::FrameKind kind, std::span<const std::byte> payload) const {
+    std::uint32_t number = 0;
+    if (!on_parcel_) return;
+    if (kind == wire::FrameKind::not_handed_on) {
+        if (const auto which = wire::read_awaited(payload)) on_parcel_(which->number, which->from);
+    } else if (payload.size() == sizeof number) {
+        std::memcpy(&number, payload.data(), sizeof number);
+        on_parcel_(number, std::nullopt);
+    }
+}
+
 bool NodeStream::receipt_is_due() const {
     return number_ != 0 && (received_ - receipt_for_ >= kReceiptFrames || unreceipted_bytes_ >= kReceiptBytes);
 }
@@ -423,7 +490,7 @@ void NodeStream::take_receipt(std::uint64_t frames) {
     const std::lock_guard lock(mutex_);
     const auto now = Clock::now();
     const auto waited = waited_ + (waits_since_ ? now - *waits_since_ : Clock::duration());
-    while (!sent_.empty() && sent_.front().first_frame + sent_.front().frames() <= frames) {
+    while (!sent_.empty() && sent_.front().first_frame + sent_.front().frames <= frames) {
         Outgoing& got = sent_.front();
         sent_bytes_ -= got.payload_bytes();
         choice_.delivered(got.plain_bytes, got.is_coded(), now, waited);
@@ -469,7 +536,7 @@ void NodeStream::begin_again(std::uint64_t received) {
     }
     for (Outgoing& batch : queue_) {
         const std::uint64_t parts = received > batch.first_frame ? received - batch.first_frame : 0;
-        if (parts < batch.frames()) batch.begin_part(static_cast<std::size_t>(parts) * wire::kPartBytes);
+        if (parts < batch.frames) batch.begin_part(parts);
     }
     receipt_for_ = received_;
     unreceipted_bytes_ = 0;

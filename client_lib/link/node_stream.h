@@ -13,12 +13,15 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "client_lib/link/coding_choice.h"
@@ -30,6 +33,7 @@
 #include "common/wire/frame.h"
 #include "common/wire/history_coder.h"
 #include "common/wire/pack_buffer.h"
+#include "common/wire/parcel.h"
 #include "common/wire/ring.h"
 
 namespace wall::client {
@@ -53,6 +57,17 @@ public:
     /// slower than the program), but never longer than `kStallLimitMs` without a byte that goes out: then the stream
     /// counts as failed. Application threads.
     void send(ContextId context, wire::PackBuffer batch);
+
+    /// The same of a batch that several nodes get alike: this node, the first of `route`, hands it on to the others.
+    void send_parcel(std::uint32_t number, std::vector<NodeIndex> route, ContextId context, wire::PackBuffer batch);
+    /// In such a stream of one of the others: here comes what `from` hands on.
+    void await_parcel(std::uint32_t number, NodeIndex from);
+    /// Whether it goes over a link, which it outlives, and not within this machine.
+    bool over_link() const { return number_ != 0; }
+    /// Of a parcel: all have got it, or `missed` has not, nor have those behind it. Transport thread.
+    using OnParcel = std::function<void(std::uint32_t number, std::optional<NodeIndex> missed)>;
+    /// Before it is given to the transport.
+    void on_parcel(OnParcel call) { on_parcel_ = std::move(call); }
 
     /// An empty buffer for a batch, with memory that a sent one has left: memory that is new costs the system more than
     /// the bytes that are packed into it. Application threads.
@@ -116,25 +131,28 @@ private:
           address_(std::move(address)),
           hello_(std::move(hello)),
           choice_(coding) {}
-    /// A batch on its way, in as many frames as it takes.
+    /// A batch, or what is not sent as one, on its way, in as many frames as it takes.
     struct Outgoing {
-        std::array<std::byte, 16> lead;  ///< batch header, padding in front of the opcodes
+        wire::FrameKind kind = wire::FrameKind::batch;
+        wire::ParcelLead parcel;           ///< of such a one
+        std::array<std::byte, 16> lead{};  ///< batch header, padding in front of the opcodes
         std::size_t lead_bytes = 0;
         wire::PackBuffer body;
-        std::size_t plain_bytes = 0;   ///< of lead and body
-        bool decided = false;          ///< whether it is coded: it is sent again as it was sent before
-        std::vector<std::byte> coded;  ///< once it was, a whole frame's payload instead of them
-        std::array<std::byte, wire::kFrameHeaderBytes> frame;  ///< of the part that is being sent
-        std::size_t part_start = 0, part_bytes = 0;            ///< of the payload
-        std::size_t sent = 0;                                  ///< of the part, its frame header included
-        std::uint64_t first_frame = 0;                         ///< by its number in the stream
-        std::uint64_t frames() const {
-            return std::max<std::size_t>(1, (payload_bytes() + wire::kPartBytes - 1) / wire::kPartBytes);
-        }
-        bool has_begun() const { return sent != 0 || part_start != 0; }
+        std::size_t plain_bytes = 0;                 ///< of lead and body
+        bool decided = false;                        ///< whether it is coded: it is sent again as it was sent before
+        std::vector<std::byte> coded;                ///< once it was, a whole frame's payload instead of them
+        std::vector<std::byte> front;                ///< of the part that is being sent: its frame header and more
+        std::uint64_t part = 0;                      ///< which one that is
+        std::size_t part_start = 0, part_bytes = 0;  ///< of the payload
+        std::size_t sent = 0;                        ///< of the part, what is in front included
+        std::uint64_t first_frame = 0;               ///< by its number in the stream
+        std::uint64_t frames = 1;                    ///< as many, also once it is coded
+        bool has_begun() const { return sent != 0 || part != 0; }
         bool is_coded() const { return !coded.empty(); }
         std::size_t payload_bytes() const { return is_coded() ? coded.size() : plain_bytes; }
-        void begin_part(std::size_t start);
+        /// Bytes of the payload in front of that part.
+        std::size_t start_of(std::uint64_t part) const;
+        void begin_part(std::uint64_t part);
     };
     /// What is to be sent next of a part, from memory that is not in one piece.
     struct Pieces {
@@ -142,10 +160,13 @@ private:
         std::size_t count = 0;
     };
     static Pieces pieces_of(const Outgoing& out);
+    static Outgoing outgoing(ContextId context, wire::PackBuffer batch);
+    void queue(Outgoing out);
     /// After a change of `owed_` or `blocked_`, with the mutex.
     void note_waiting();
     void set_blocked(bool blocked);
     void handle_frame(wire::FrameKind kind, std::vector<std::byte> payload);
+    void hear_of_parcel(wire::FrameKind kind, std::span<const std::byte> payload) const;
     void take_receipt(std::uint64_t frames);
     bool write_receipt();
     bool receipt_is_due() const;
@@ -170,6 +191,7 @@ private:
     const std::uint32_t number_;            // by which the node knows it; 0: it ends with its connection
     const std::string address_, hello_;     // to come to it again
     std::optional<NodeIndex> counted_for_;
+    OnParcel on_parcel_;
     std::shared_ptr<StreamAttempts> attempts_;  // to go on; transport thread
     std::atomic<bool> connected_{true};
     bool stalls_ = true;

@@ -13,7 +13,7 @@ namespace wall::client {
 namespace {
 
 constexpr std::array<const char*, static_cast<std::size_t>(NodeCounter::kCount)> kCounterNames{
-    "state_bytes", "object_bytes", "geometry_bytes", "blocks", "batches", "link_bytes"};
+    "state_bytes", "object_bytes", "geometry_bytes", "blocks", "batches", "link_bytes", "handed_bytes"};
 
 constexpr int kWriteLimitMs = 500;  // at the end of the process
 

@@ -25,6 +25,7 @@ enum class NodeCounter : std::uint8_t {
     blocks,          ///< blocks sent
     batches,         ///< frames of the data stream
     link_bytes,      ///< that went out: all of these and what is around them, coded where the link asks for it
+    handed_bytes,    ///< of objects that another node handed on to it: these did not go out
     kCount
 };
 

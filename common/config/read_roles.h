@@ -9,7 +9,8 @@
 
 namespace wall::config {
 
-/// A word, or several: what the node does for programs whose geometry is dealt to nodes; without it both.
+/// A word, or several: what the node does for programs whose geometry is dealt to nodes; without it it renders and
+/// displays.
 Roles read_roles(TreeReader& read, const toml::table& node);
 
 /// The node's [[node.tile]], at least one; a node that shows nothing may have none.

@@ -73,7 +73,7 @@ inline bool is_headless(const TileConfig& tile) { return !tile.window && !tile.k
 /// What one process draws: the tiles of a [[node]], or those that one of its GPUs draws if there are several.
 /// What a node may do for programs whose geometry is dealt to nodes (docs/sort-last.md): draw for others, show.
 struct Roles {
-    bool render = true, display = true;
+    bool render = true, display = true, compose = false;
     bool operator==(const Roles&) const = default;
 };
 

@@ -5,6 +5,7 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/error.hpp>
 #include <boost/asio/ssl/stream.hpp>
@@ -221,7 +222,8 @@ bool Stream::is_stuck() {
     tcp_info info{};
     socklen_t length = sizeof info;
     if (::getsockopt(descriptor(), IPPROTO_TCP, TCP_INFO, &info, &length) != 0) return false;
-    return info.tcpi_retransmits >= kStuckRetransmits && info.tcpi_last_ack_recv >= kStuckMs;
+    const unsigned in_vain = std::max(info.tcpi_retransmits, info.tcpi_probes);
+    return in_vain >= kStuckRetransmits && info.tcpi_last_ack_recv >= kStuckMs;
 }
 
 asio::any_io_executor Stream::executor() { return parts_->socket.get_executor(); }

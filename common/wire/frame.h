@@ -11,15 +11,18 @@
 // A batch may be `coded` (history_coder.h): then its payload is bytes:u32, how many come out, and what the encoder made
 // of them. All coded batches of a stream are one sequence, which others stand between.
 //
+// What several nodes get alike, such as a texture, may go to one of them as a parcel, which hands it on to the next
+// one; in the streams of the others an `awaited` frame stands where its commands belong (parcel.h).
+//
 // The first frame of a client is `hello`; a node answers `welcome`, `ring` or `error` and closes. After `ring` the
 // client's frames go through the ring (ring.h) whose descriptor came with the hello's first bytes, and each byte that
 // it sends says that there is something in the ring.
 //
 // After a `welcome` with a number the stream outlives its connection. Both sides count what has come whole of `batch`,
-// `coded` and `part` frames, or of `reply` and `swap_done` frames, say now and then how many (`receipt`), and keep what
-// they have sent beyond that. A client that has lost the connection comes on another one with a hello that names the
-// stream and its count; the node answers `resumed` with its own; and each side sends again what the other one has not
-// got. (docs/stream-format.md)
+// `coded`, `part`, `parcel` and `awaited` frames, or of `reply` and `swap_done` frames, say now and then how many
+// (`receipt`), and keep what they have sent beyond that. A client that has lost the connection comes on another one
+// with a hello that names the stream and its count; the node answers `resumed` with its own; and each side sends again
+// what the other one has not got. (docs/stream-format.md)
 #pragma once
 
 #include <array>
@@ -41,24 +44,29 @@ enum class FrameKind : std::uint8_t {
     // both ways, not between the parts of a batch
     receipt = 4,  ///< frames:u64 that have come, from the stream's beginning on
     // client -> node
-    coded = 5,  ///< a whole batch, coded
+    coded = 5,    ///< a whole batch, coded
+    parcel = 7,   ///< a piece of a batch that several nodes get alike, one from the other (parcel.h); node -> node, too
+    awaited = 8,  ///< number:u32 from:u32: here comes the parcel that this node hands on
     // node -> node
     partial = 6,  ///< of a window, for one layer (tileserver/partials/partial_format.h)
     // node -> client
-    welcome = 16,      ///< stream:u32, by which a later hello names it; 0: it ends with its connection
-    reply = 17,        ///< request:u32, then the answer's bytes
-    swap_done = 18,    ///< surface:u32 frame:u32: this node has rendered (not necessarily shown) the frame
-    error = 19,        ///< UTF-8 text; the node closes the stream after it
-    ring = 20,         ///< empty; `welcome`, and what follows is expected in the ring
-    room = 21,         ///< empty; there is room in the ring again
-    resumed = 22,      ///< frames:u64 as in `receipt`; the stream goes on here
-    unreachable = 23,  ///< UTF-8 text, by whoever stands for a node: it cannot be reached now
-    begin_again = 24,  ///< empty, by a node that records: what it has is to be told anew from the next frame on
+    welcome = 16,        ///< stream:u32, by which a later hello names it; 0: it ends with its connection
+    reply = 17,          ///< request:u32, then the answer's bytes
+    swap_done = 18,      ///< surface:u32 frame:u32: this node has rendered (not necessarily shown) the frame
+    error = 19,          ///< UTF-8 text; the node closes the stream after it
+    ring = 20,           ///< empty; `welcome`, and what follows is expected in the ring
+    room = 21,           ///< empty; there is room in the ring again
+    resumed = 22,        ///< frames:u64 as in `receipt`; the stream goes on here
+    unreachable = 23,    ///< UTF-8 text, by whoever stands for a node: it cannot be reached now
+    begin_again = 24,    ///< empty, by a node that records: what it has is to be told anew from the next frame on
+    not_handed_on = 25,  ///< number:u32 to:u32: that node has not got this parcel
+    handed_on = 26,      ///< number:u32, by the last of its route: all have got this parcel
 };
 
 /// Of those that receipts count.
 constexpr bool brings_commands(FrameKind kind) {
-    return kind == FrameKind::batch || kind == FrameKind::part || kind == FrameKind::coded;
+    return kind == FrameKind::batch || kind == FrameKind::part || kind == FrameKind::coded ||
+           kind == FrameKind::parcel || kind == FrameKind::awaited;
 }
 
 struct FrameHeader {

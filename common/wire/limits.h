@@ -7,7 +7,7 @@
 namespace wall::wire {
 
 inline constexpr std::uint32_t kProtocolVersion =
-    12;  ///< of control; both sides must agree exactly (data: kStreamVersion, wire.gen.h)
+    13;  ///< of control; both sides must agree exactly (data: kStreamVersion, wire.gen.h)
 inline constexpr std::uint32_t kMaxControlMessage = 64u << 20;  ///< bytes; the largest is the stacking of many windows
 inline constexpr std::uint32_t kControlPart = 1u << 20;         ///< bytes of a picture or an answer in one message
 inline constexpr std::uint32_t kMaxFramePayload = 256u << 20;   ///< bytes

@@ -24,14 +24,15 @@ CONTROL_PORT, DATA_PORT = 7770, 7790
 
 class MachineWall(Wall):
     """`clients` have joined; `guests` are hosts that have not, for join_client(). `gpus` are how many a node draws
-    with, if several; `node_keys` stand in each [[node]]. Options that are not here are those of Wall. All ends with
-    the thread that starts it."""
+    with, if several; `node_keys` stand in each [[node]]. `workers` are further nodes, without tiles, and what stands in
+    each of theirs. Options that are not here are those of Wall. All ends with the thread that starts it."""
 
     def __init__(self, tiles: tuple[int, int] = (3, 2), tile_size: tuple[int, int] = (200, 150), *,
                  clients: Sequence[str] = ("desk",), guests: Sequence[str] = (),
-                 gpus: dict[str, int] | None = None, node_keys: str = "", **options):
+                 gpus: dict[str, int] | None = None, node_keys: str = "", workers: dict[str, str] | None = None,
+                 **options):
         super().__init__(tiles, tile_size, die_with_parent=True, **options)
-        self.clients, self.gpus, self.node_keys = clients, gpus or {}, node_keys
+        self.clients, self.gpus, self.node_keys, self.workers = clients, gpus or {}, node_keys, workers or {}
         self.hosts = Hosts(WALLD, *self.node_names, *clients, *guests)
 
     # ---- life ----
@@ -39,11 +40,11 @@ class MachineWall(Wall):
     @property
     def node_names(self) -> list[str]:
         """Each is also the name of its host."""
-        return [f"node-{column}" for column in range(self.tiles[0])]
+        return [f"node-{column}" for column in range(self.tiles[0])] + list(self.workers)
 
     def tiles_of(self, node: str) -> list[str]:
         """Those of a column, from the top."""
-        return [f"{node.removeprefix('node-')}-{row}" for row in range(self.tiles[1])]
+        return [] if node in self.workers else [f"{node.removeprefix('node-')}-{row}" for row in range(self.tiles[1])]
 
     def listen_address(self, node: str) -> str:
         """One says where exactly it listens; walld sees where the others are."""
@@ -61,7 +62,8 @@ class MachineWall(Wall):
         control = [f"unix:{self.folder}/walld.sock", f"{self.hosts.address(WALLD)}:{CONTROL_PORT}"]
         nodes = "".join(f"[[node]]\nname = {quoted(name)}\nbackend = {quoted(self.backend)}\n"
                         f"listen = {quoted(self.listen_address(name))}\n"
-                        + (f"gpus = {self.gpus[name]}\n" if name in self.gpus else "") + self.node_keys + "\n"
+                        + (f"gpus = {self.gpus[name]}\n" if name in self.gpus else "")
+                        + self.workers.get(name, self.node_keys) + "\n"
                         + "".join(map(self._tile, self.tiles_of(name))) for name in self.node_names)
         return (f"[wall]\nname = {quoted(self.name)}\nswap_timeout_ms = {self.swap_timeout_ms}\n"
                 f"state_directory = {quoted(str(self.state_of(WALLD)))}\n{self.options}\n"

@@ -33,6 +33,7 @@ constexpr const char* kNoHello = "no hello came";
 constexpr auto kTicketLimit = 3s;  // walld's ticket may come later than the client
 constexpr auto kTicketPoll = 10ms;
 constexpr auto kAhead = 100ms;  // of the bandwidth that a session may have
+constexpr auto kRoomPoll = 5ms;
 constexpr auto kAwaited = 15s;  // for a client whose connection was lost; it tries for less
 
 /// The other end has closed the socket, and nothing that it sent before is left.
@@ -60,6 +61,7 @@ asio::awaitable<void> DataStream::run() {
     const bool admitted = done.has_value();
     while (done && !handed_over_) {
         if (partials_) done = co_await take_partials();
+        else if (parcels_) done = co_await take_parcels();
         else done = co_await take_batches();
         if (!may_go_on()) break;
         log::info("stream_lost stream={} session={} reason={}", id_.value, session_.value,
@@ -104,12 +106,13 @@ asio::awaitable<Result<void>> DataStream::greet() {
     if (hello.rank() >= std::max(1u, admission->membership.members))
         co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " +
                              std::to_string(hello.rank()));
-    if (hello.partials()) {
-        partials_ = true;
+    if (hello.partials() || hello.parcels()) {
+        partials_ = hello.partials();
+        parcels_ = !partials_;
         source_.set_limits(wire::kMaxFramePayload, wire::kMaxFramePayload);
         host_.stream_open(id_);
-        log::info("partials_open stream={} session={} transport={}", id_.value, session_.value,
-                  log::quoted(connection_.transport()));
+        log::info("peer_open stream={} session={} transport={} brings={}", id_.value, session_.value,
+                  log::quoted(connection_.transport()), log::quoted(partials_ ? "partials" : "parcels"));
         co_return Result<void>{};
     }
     rank_ = hello.rank();
@@ -149,10 +152,10 @@ bool DataStream::comes_from(const std::string& machine) const {
     return machine.empty() || (key && key->bytes() == machine);
 }
 
-/// A program comes from its machine, partial pictures from machines of nodes.
+/// A program comes from its machine, what nodes bring from machines of nodes.
 bool DataStream::may_come(const Admission& known, const proto::DataHello& hello) const {
     if (!SessionId(hello.session()) || !tls::same_secret(known.ticket, hello.ticket())) return false;
-    if (!hello.partials()) return comes_from(known.key);
+    if (!hello.partials() && !hello.parcels()) return comes_from(known.key);
     const auto& key = connection_.peer_key();
     return !key || std::ranges::count(known.peer_keys, key->bytes()) > 0;
 }
@@ -160,8 +163,10 @@ bool DataStream::may_come(const Admission& known, const proto::DataHello& hello)
 asio::awaitable<std::optional<Admission>> DataStream::find_admission(const proto::DataHello& hello) {
     const auto until = std::chrono::steady_clock::now() + kTicketLimit;
     for (;;) {
-        if (const Admission* known = host_.admission(SessionId(hello.session())))
-            co_return may_come(*known, hello) ? std::optional(*known) : std::nullopt;
+        const Admission* known = host_.admission(SessionId(hello.session()));
+        if (known && may_come(*known, hello)) co_return *known;
+        if (known && !hello.partials() && !hello.parcels())
+            co_return std::nullopt;  // a new node may come before its key
         if (std::chrono::steady_clock::now() > until || closing_ || is_gone(connection_.descriptor()))
             co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
@@ -192,23 +197,112 @@ asio::awaitable<Result<void>> DataStream::take_batches() {
         source_.lend(batches_->take_spare());
         auto frame = co_await source_.next();
         if (!frame) co_return tl::unexpected(frame.error());
-        if (frame->kind == wire::FrameKind::receipt) {
-            if (auto taken = take_receipt(frame->payload); !taken) co_return taken;
-            continue;
-        }
-        if (frame->kind != wire::FrameKind::batch)
-            co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
         const auto bytes = frame->payload.size();
-        room_ = batches_->push(std::move(frame->payload));
+        switch (frame->kind) {
+            case wire::FrameKind::receipt:
+                if (auto taken = take_receipt(frame->payload); !taken) co_return taken;
+                continue;
+            case wire::FrameKind::batch: room_ = batches_->push(std::move(frame->payload)); break;
+            case wire::FrameKind::parcel: {
+                auto whole = co_await take_piece(std::move(frame->payload));
+                if (!whole) co_return tl::unexpected(whole.error());
+                if (*whole) room_ = batches_->push(std::move(**whole));
+                break;
+            }
+            case wire::FrameKind::awaited:
+                if (auto placed = await_parcel(frame->payload); !placed) co_return placed;
+                break;
+            default: co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
+        }
         host_.render().wake();
         send_receipt(bytes);
         co_await hold_to_bandwidth(bytes);
-        while (!room_ && !closing_ && !next_) {
-            timer_.expires_after(1s);
-            co_await timer_.async_wait(net::kTuple);
-        }
+        co_await wait_for_room();
     }
     co_return Result<void>{};
+}
+
+asio::awaitable<void> DataStream::wait_for_room() {
+    while (!room_ && !closing_ && !next_) {
+        timer_.expires_after(1s);
+        co_await timer_.async_wait(net::kTuple);
+    }
+}
+
+// ---- parcels ----
+
+asio::awaitable<Result<std::optional<RawBytes>>> DataStream::take_piece(RawBytes payload) {
+    const auto piece = wire::read_parcel_piece(payload);
+    if (!piece) co_return tl::unexpected(piece.error());
+    auto whole = parcel_.take(*piece);
+    if (const auto next = piece->lead.next(); whole && next) {
+        const std::uint32_t number = piece->lead.number;
+        wire::hand_on_piece(payload);
+        co_await host_.hand_on(session_, *next, number, std::move(payload));
+    }
+    co_return whole;
+}
+
+/// Where they come too soon, the node that brings them waits.
+asio::awaitable<Result<void>> DataStream::take_parcels() {
+    Result<void> done;
+    while (!closing_ && done) {
+        auto frame = co_await source_.next();
+        if (!frame) done = tl::unexpected(frame.error());
+        else if (frame->kind != wire::FrameKind::parcel) done = wall::fail("unexpected frame of a node that hands on");
+        if (!done) break;
+        const auto piece = wire::read_parcel_piece(frame->payload);
+        if (!piece || piece->lead.position == 0) {
+            done = piece ? wall::fail("parcel: of nobody") : tl::unexpected(piece.error());
+            break;
+        }
+        const std::uint32_t number = piece->lead.number;
+        const bool is_last = !piece->lead.next();
+        peer_ = piece->lead.route[piece->lead.position - 1];
+        if (DataStream* to = host_.program_stream(session_)) to->note_piece();
+        auto whole = co_await take_piece(std::move(frame->payload));
+        if (!whole) done = tl::unexpected(whole.error());
+        if (!whole || !*whole) continue;
+        const auto has_room = [&] {
+            const DataStream* to = host_.program_stream(session_);
+            return to == nullptr || to->has_room_for(number);
+        };
+        while (!closing_ && !has_room()) {
+            timer_.expires_after(kRoomPoll);
+            co_await timer_.async_wait(net::kTuple);
+        }
+        DataStream* const to = host_.program_stream(session_);
+        if (to == nullptr) continue;
+        if (is_last) to->send(wire::FrameKind::handed_on, std::as_bytes(std::span(&number, 1)));
+        to->take_parcel(number, std::move(**whole));
+    }
+    if (peer_) host_.lose_parcels(session_, *peer_);
+    co_return done;
+}
+
+Result<void> DataStream::await_parcel(std::span<const std::byte> payload) {
+    const auto awaited = wire::read_awaited(payload);
+    if (!awaited) return tl::unexpected(awaited.error());
+    if (auto here = awaited_.await(awaited->number, awaited->from, AwaitedParcels::Clock::now())) {
+        room_ = batches_->push(std::move(*here));
+        return {};
+    }
+    if (awaited_.too_many()) return wall::fail("more parcels are awaited than a stream may have on their way");
+    batches_->push_place(awaited->number);
+    return {};
+}
+
+void DataStream::take_parcel(std::uint32_t number, RawBytes batch) {
+    auto placed = awaited_.take(number, std::move(batch), AwaitedParcels::Clock::now());
+    if (placed && batches_->fill(number, std::move(*placed))) host_.render().wake();
+}
+
+void DataStream::miss_parcels(const std::function<bool(NodeIndex)>& gone) {
+    const bool missed = gone ? awaited_.waits_for(gone) : awaited_.overdue(AwaitedParcels::Clock::now());
+    if (!missed || closing_) return;
+    log::warn("parcel_missed stream={} session={}", id_.value, session_.value);
+    resumable_ = false;
+    close();
 }
 
 /// Waits until so much more may have come. A moment's worth may be ahead of that, so that small frames are not late.

@@ -18,6 +18,8 @@
 
 #include "common/base/ids.h"
 #include "common/net/control_connection.h"
+#include "common/wire/parcel.h"
+#include "tileserver/io/awaited_parcels.h"
 #include "tileserver/io/frame_source.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/render_thread.h"
@@ -38,7 +40,7 @@ struct Admission {
     std::string ticket;
     Membership membership;
     std::string key{};  ///< fingerprint of the machine that it runs on, which alone may come; empty: any
-    std::vector<std::string> peer_keys{};  ///< of machines whose nodes may bring partial pictures
+    std::vector<std::string> peer_keys{};  ///< of machines whose nodes may bring something for it
     SessionQuota quota{};
 };
 
@@ -62,6 +64,14 @@ public:
     /// The process has begun a new stream: it goes on with none that it had before. Nor do the others of a parallel
     /// program, which come to a node together.
     virtual void end_earlier(const DataStream& stream) = 0;
+
+    // ---- parcels (common/wire/parcel.h) ----
+    /// The stream that brings the session's commands; null: there is none.
+    virtual DataStream* program_stream(SessionId session) = 0;
+    /// To another node; comes to its end when more may be handed on to that.
+    virtual asio::awaitable<void> hand_on(SessionId session, NodeIndex to, std::uint32_t number, RawBytes piece) = 0;
+    /// Nothing comes any more from that node over the connection that it had.
+    virtual void lose_parcels(SessionId session, NodeIndex from) = 0;
 };
 
 class DataStream : public std::enable_shared_from_this<DataStream> {
@@ -89,6 +99,19 @@ public:
     }
 
     SessionId session() const { return session_; }
+    /// It brings a session's commands.
+    bool has_commands() const { return batches_ != nullptr && !closing_; }
+
+    // ---- parcels that come for it from other nodes ----
+    bool has_room_for(std::uint32_t number) const {
+        return awaited_.has_room(number, batches_->bytes(), BatchQueue::kHighWater);
+    }
+    void take_parcel(std::uint32_t number, RawBytes batch);
+    void note_piece() { awaited_.note(AwaitedParcels::Clock::now()); }
+    /// Ends it if one is awaited of a node that is gone, or has been for long: the program begins a new one, and sends
+    /// what is needed. Nothing: only the latter.
+    void miss_parcels(const std::function<bool(NodeIndex)>& gone);
+
     /// What brings the program's commands: "ring", "unix", "tcp" or "tls".
     const char* transport() const { return transport_; }
     /// The address of the other end, without its port.
@@ -124,6 +147,12 @@ private:
     asio::awaitable<std::optional<Admission>> find_admission(const proto::DataHello& hello);
     /// Of a node that brings partial pictures. Ends with the reason.
     asio::awaitable<Result<void>> take_partials();
+    /// Of a node that hands parcels on. Ends with the reason.
+    asio::awaitable<Result<void>> take_parcels();
+    /// Hands it on, if somebody follows. The whole parcel with its last piece.
+    asio::awaitable<Result<std::optional<RawBytes>>> take_piece(RawBytes payload);
+    Result<void> await_parcel(std::span<const std::byte> payload);
+    asio::awaitable<void> wait_for_room();
     asio::awaitable<void> write_queue();
     bool comes_from(const std::string& machine) const;
     bool may_come(const Admission& known, const proto::DataHello& hello) const;
@@ -146,7 +175,12 @@ private:
     std::uint64_t forgotten_ = 0;                                  // counted frames before those of sent_
     std::size_t outgoing_bytes_ = 0, sent_bytes_ = 0;
 
+    wire::ParcelReader parcel_;  // that comes over it
+    AwaitedParcels awaited_;     // of its commands
+
     bool partials_ = false;           // it brings partial pictures, and no commands
+    bool parcels_ = false;            // it brings parcels, and no commands
+    std::optional<NodeIndex> peer_;   // that brings them
     bool resumable_ = false;          // it may go on over another connection
     bool handed_over_ = false;        // its connection is an earlier stream's now
     std::optional<Connection> next_;  // on which it goes on

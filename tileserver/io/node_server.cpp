@@ -122,7 +122,9 @@ NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig&
       started_us_(microseconds_since_1970()),
       described_(std::move(described)),
       parts_(executor),
-      partial_links_(executor, keys_.tls),
+      peer_links_(
+          executor, keys_.tls,
+          [this](SessionId session, std::uint32_t number, NodeIndex to) { not_handed_on(session, number, to); }),
       tile_streams_(executor, [this](PictureId stream, Parts parts) {
           parts_.send({PartsOf::Kind::stream, stream}, std::move(parts));
       }) {}
@@ -138,7 +140,7 @@ Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor execu
     const auto address = keys.joined ? for_other_machines(node) : node.listen;
     std::unique_ptr<NodeServer> server(
         new NodeServer(executor, wall, node.name, std::move(keys), std::move(described)));
-    server->partial_links_.set_codec(node.partial_codec);
+    server->peer_links_.set_codec(node.partial_codec);
     auto listener = net::Listener::open(executor, address, peers);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));
@@ -174,7 +176,7 @@ void NodeServer::stop() {
     turn_timer_.cancel();
     watch_timer_.cancel();
     if (link_) link_->close();
-    partial_links_.close();
+    peer_links_.close();
     for (const auto& [id, stream] : std::map(streams_)) stream->close();
 }
 
@@ -183,6 +185,12 @@ void NodeServer::post(std::function<void()> task) { asio::post(executor_, std::m
 DataStream* NodeServer::stream(StreamId id) {
     const auto at = streams_.find(id);
     return at == streams_.end() ? nullptr : at->second.get();
+}
+
+DataStream* NodeServer::program_stream(SessionId session) {
+    for (auto at = streams_.rbegin(); at != streams_.rend(); ++at)
+        if (at->second->session() == session && at->second->has_commands()) return at->second.get();
+    return nullptr;
 }
 
 void NodeServer::end_earlier(const DataStream& stream) {
@@ -243,7 +251,7 @@ const Admission* NodeServer::admission(SessionId session) const {
 void NodeServer::end_session(SessionId session) {
     admissions_.erase(session);
     shut_out_.forget(session);
-    partial_links_.forget(session);
+    peer_links_.forget(session);
     render_->remove_session(session);
     for (const auto& [id, stream] : std::map(streams_))
         if (stream->session() == session) stream->close();
@@ -332,6 +340,7 @@ asio::awaitable<void> NodeServer::watch_walld() {
     while (!stopping_) {
         watch_timer_.expires_after(watch_.interval());
         co_await watch_timer_.async_wait(net::kTuple);
+        peer_links_.end_stuck();
         if (!link_) continue;
         if (link_->is_stuck()) {  // another one is there sooner than TCP asks again
             link_->close();
@@ -389,7 +398,7 @@ void NodeServer::handle(const proto::Envelope& envelope) {
     switch (envelope.message_case()) {
         case Case::kNodeWelcome: return welcome(envelope.node_welcome());
         case Case::kTicket: return admit(envelope.ticket());
-        case Case::kPartialPeers: return set_peers(envelope.partial_peers());
+        case Case::kPeers: return set_peers(envelope.peers());
         case Case::kSessionEnd: return end_session(SessionId(envelope.session_end().session()));
         case Case::kPresent:
             return render_->present(SessionId(envelope.present().session()), SurfaceId(envelope.present().surface()),
@@ -454,19 +463,33 @@ void NodeServer::admit(const proto::Ticket& ticket) {
     render_->set_quota(SessionId(ticket.session()), quota);
 }
 
-void NodeServer::set_peers(const proto::PartialPeers& peers) {
-    std::map<NodeIndex, PartialPeer> nodes;
+void NodeServer::set_peers(const proto::Peers& peers) {
+    std::map<NodeIndex, Peer> nodes;
     for (const auto& node : peers.nodes()) {
         auto address = net::Address::parse(node.address());
         const auto key = tls::Fingerprint::from_bytes(node.key());
         if (!address || (!key && !node.key().empty())) continue;
         nodes.emplace(NodeIndex(node.node()),
-                      PartialPeer{std::move(*address), node.ticket(), key ? std::optional(*key) : std::nullopt});
+                      Peer{std::move(*address), node.ticket(), key ? std::optional(*key) : std::nullopt});
     }
     std::set<NodeIndex> there;
     for (const auto& node : peers.nodes()) there.insert(NodeIndex(node.node()));
+    if (DataStream* program = program_stream(SessionId(peers.session())))
+        program->miss_parcels([&](NodeIndex from) { return !there.contains(from); });
     render_->set_partial_nodes(SessionId(peers.session()), std::move(there));
-    partial_links_.set_peers(SessionId(peers.session()), std::move(nodes));
+    peer_links_.set_peers(SessionId(peers.session()), std::move(nodes));
+}
+
+void NodeServer::lose_parcels(SessionId session, NodeIndex from) {
+    if (DataStream* program = program_stream(session))
+        program->miss_parcels([from](NodeIndex of) { return of == from; });
+}
+
+/// The program, which has a stream to here, sends it anew to those that wait for it.
+void NodeServer::not_handed_on(SessionId session, std::uint32_t number, NodeIndex to) {
+    log::warn("not_handed_on session={} to={}", session.value, to.value);
+    if (DataStream* program = program_stream(session))
+        program->send(wire::FrameKind::not_handed_on, words(number, to.value));
 }
 
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {
@@ -561,7 +584,7 @@ void NodeServer::picture(Picture picture) {
 
 void NodeServer::partial(SessionId session, NodeIndex to, std::vector<std::byte> message) {
     post([this, session, to, message = std::move(message)]() mutable {
-        partial_links_.send(session, to, std::move(message));
+        peer_links_.send_partial(session, to, std::move(message));
     });
 }
 
@@ -579,6 +602,7 @@ void NodeServer::stats(const RenderStats& stats) {
         proto::Envelope envelope;
         auto& out = *envelope.mutable_node_stats();
         out.set_bytes_received(bytes_received_);
+        out.set_bytes_handed_on(peer_links_.bytes_handed_on());
         out.set_time_us(microseconds_since_1970());
         fill_stats(stats, out);
         std::map<std::string, std::uint32_t> transports;
@@ -592,6 +616,7 @@ void NodeServer::stats(const RenderStats& stats) {
         tile_streams_.fill_stats(out);
         to_walld(envelope);
         if (burst_.tick(bytes_received_)) give_memory_back();
+        for (const auto& [id, stream] : streams_) stream->miss_parcels({});
     });
 }
 

@@ -20,7 +20,7 @@
 #include "tileserver/io/burst_watch.h"
 #include "tileserver/io/data_stream.h"
 #include "tileserver/io/part_sender.h"
-#include "tileserver/io/partial_links.h"
+#include "tileserver/io/peer_links.h"
 #include "tileserver/io/shut_out.h"
 #include "tileserver/io/tile_streams.h"
 #include "tileserver/io/walld_watch.h"
@@ -88,6 +88,11 @@ private:
     void stream_open(StreamId stream) override { strangers_.erase(stream); }
     DataStream* stream(StreamId id) override;
     void end_earlier(const DataStream& stream) override;
+    DataStream* program_stream(SessionId session) override;
+    asio::awaitable<void> hand_on(SessionId session, NodeIndex to, std::uint32_t number, RawBytes piece) override {
+        return peer_links_.hand_on(session, to, number, std::move(piece));
+    }
+    void lose_parcels(SessionId session, NodeIndex from) override;
     void stream_closed(StreamId stream) override {
         strangers_.erase(stream);
         streams_.erase(stream);
@@ -126,7 +131,8 @@ private:
     void walld_answers();
     void welcome(const proto::NodeWelcome& welcome);
     void admit(const proto::Ticket& ticket);
-    void set_peers(const proto::PartialPeers& peers);
+    void set_peers(const proto::Peers& peers);
+    void not_handed_on(SessionId session, std::uint32_t number, NodeIndex to);
     void end_session(SessionId session);
     void to_walld(const proto::Envelope& envelope);
     void post(std::function<void()> task);
@@ -167,7 +173,7 @@ private:
     bool refused_ = false;  // by walld, on this link
     std::chrono::steady_clock::time_point last_stats_ = std::chrono::steady_clock::now();
     PartSender parts_;
-    PartialLinks partial_links_;
+    PeerLinks peer_links_;
     TileStreams tile_streams_;
     std::unique_ptr<RenderThread> render_;  // last: it is gone before what it reports to
 };

@@ -252,8 +252,9 @@ void for_each_run(const Partial& partial, const PixelBlock& into, Each&& each) {
     }
 }
 
-/// `nearer(theirs, ours)`, of 24 bits each.
-template <class Nearer>
+/// `nearer(theirs, ours)`, of 24 bits each. `kMarks`: what the block has not yet, by its values, is theirs in any case,
+/// and has it then.
+template <bool kMarks, class Nearer>
 void merge_by_depth(const Partial& partial, PixelBlock& into, const Nearer& nearer) {
     for_each_run(partial, into, [&](std::size_t pixel, std::size_t to, std::size_t count) {
         const std::uint32_t* const colors = &partial.colors[pixel];
@@ -261,9 +262,10 @@ void merge_by_depth(const Partial& partial, PixelBlock& into, const Nearer& near
         std::uint32_t* const our_colors = &into.colors[to];
         std::uint32_t* const our_depths = &into.depths[to];
         for (std::size_t i = 0; i < count; ++i) {
-            const bool wins = nearer(depths[i] >> 8, our_depths[i] >> 8);
+            const std::uint32_t value = our_depths[i] & 0xff;
+            const bool wins = (kMarks && value == 0) || nearer(depths[i] >> 8, our_depths[i] >> 8);
             our_colors[i] = wins ? colors[i] : our_colors[i];
-            our_depths[i] = wins ? (depths[i] & 0xffffff00) | (our_depths[i] & 0xff) : our_depths[i];
+            our_depths[i] = wins ? (depths[i] & 0xffffff00) | (kMarks ? 1 : value) : our_depths[i];
         }
     });
 }
@@ -280,10 +282,13 @@ std::uint32_t over(std::uint32_t theirs, std::uint32_t ours) {
     return out;
 }
 
+template <bool kMarks>
 void merge_over(const Partial& partial, PixelBlock& into) {
     for_each_run(partial, into, [&](std::size_t pixel, std::size_t to, std::size_t count) {
-        for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t i = 0; i < count; ++i) {
             into.colors[to + i] = over(partial.colors[pixel + i], into.colors[to + i]);
+            if constexpr (kMarks) into.depths[to + i] = 1;
+        }
     });
 }
 
@@ -293,17 +298,26 @@ bool is_merge(GLenum by) {
     return by == GL_LESS || by == GL_LEQUAL || by == GL_GREATER || by == GL_GEQUAL || by == GL_BLEND;
 }
 
-bool merge(const Partial& partial, GLenum by, PixelBlock& into) {
+namespace {
+
+template <bool kMarks>
+bool merge_or_compose(const Partial& partial, GLenum by, PixelBlock& into) {
     if (partial.area != into.area) return false;
-    if (by == GL_BLEND) return merge_over(partial, into), true;
+    if (by == GL_BLEND) return merge_over<kMarks>(partial, into), true;
     if (partial.depths.size() != partial.colors.size()) return false;
     switch (by) {
-        case GL_LESS: merge_by_depth(partial, into, std::less<>()); return true;
-        case GL_LEQUAL: merge_by_depth(partial, into, std::less_equal<>()); return true;
-        case GL_GREATER: merge_by_depth(partial, into, std::greater<>()); return true;
-        case GL_GEQUAL: merge_by_depth(partial, into, std::greater_equal<>()); return true;
+        case GL_LESS: merge_by_depth<kMarks>(partial, into, std::less<>()); return true;
+        case GL_LEQUAL: merge_by_depth<kMarks>(partial, into, std::less_equal<>()); return true;
+        case GL_GREATER: merge_by_depth<kMarks>(partial, into, std::greater<>()); return true;
+        case GL_GEQUAL: merge_by_depth<kMarks>(partial, into, std::greater_equal<>()); return true;
         default: return false;
     }
 }
+
+}  // namespace
+
+bool merge(const Partial& partial, GLenum by, PixelBlock& into) { return merge_or_compose<false>(partial, by, into); }
+
+bool compose(const Partial& partial, GLenum by, PixelBlock& into) { return merge_or_compose<true>(partial, by, into); }
 
 }  // namespace wall::tileserver

@@ -78,6 +78,9 @@ std::vector<std::byte> recode_partial(std::span<const std::byte> message, std::s
 Result<PartialKey> key_of_partial(std::span<const std::byte> message);
 Result<Partial> decode_partial(std::span<const std::byte> message);
 
+/// What several nodes have drawn, put together by one that has drawn nothing itself: into a block of zeros, whose
+/// values tell then what was drawn. Else as merge().
+bool compose(const Partial& partial, GLenum by, PixelBlock& into);
 /// Whether merge() knows it.
 bool is_merge(GLenum by);
 /// What was drawn for others, as if it were drawn now. `by`: GL_LESS, GL_LEQUAL, GL_GREATER or GL_GEQUAL, and those

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Batches of one stream on their way from the I/O thread to the render thread. Bounded by bytes: a full queue makes the
-// I/O thread stop reading the socket, so that the client waits in the end. Thread-safe.
+// Batches of one stream on their way from the I/O thread to the render thread. One that another node hands on has its
+// place among them before it is here (common/wire/parcel.h); nothing behind it comes out before it has come. Bounded by
+// bytes: a full queue makes the I/O thread stop reading the socket, so that the client waits in the end. Thread-safe.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -28,19 +31,34 @@ public:
     bool push(RawBytes batch) {
         const std::lock_guard lock(mutex_);
         bytes_ += batch.size();
-        batches_.push_back(std::move(batch));
+        batches_.push_back({std::move(batch), std::nullopt});
         full_ = bytes_ >= kHighWater;
         return !full_;
+    }
+    /// A place for the parcel of that number.
+    void push_place(std::uint32_t number) {
+        const std::lock_guard lock(mutex_);
+        batches_.push_back({{}, number});
+    }
+    /// The parcel has come. False: there is no place for it.
+    bool fill(std::uint32_t number, RawBytes batch) {
+        const std::lock_guard lock(mutex_);
+        const auto place = std::ranges::find(batches_, std::optional(number), &Entry::awaited);
+        if (place == batches_.end()) return false;
+        bytes_ += batch.size();
+        *place = {std::move(batch), std::nullopt};
+        full_ = full_ || bytes_ >= kHighWater;
+        return true;
     }
 
     /// Looks at the next batch without taking it. Null: none. Render thread; valid until pop().
     const RawBytes* front() const {
         const std::lock_guard lock(mutex_);
-        return batches_.empty() ? nullptr : &batches_.front();
+        return batches_.empty() || batches_.front().awaited ? nullptr : &batches_.front().bytes;
     }
     RawBytes pop() {
         std::unique_lock lock(mutex_);
-        RawBytes batch = std::move(batches_.front());
+        RawBytes batch = std::move(batches_.front().bytes);
         batches_.pop_front();
         bytes_ -= batch.size();
         const bool room = full_ && bytes_ <= kLowWater;
@@ -82,9 +100,14 @@ public:
     }
 
 private:
+    struct Entry {
+        RawBytes bytes;
+        std::optional<std::uint32_t> awaited;  ///< the parcel that they are to be
+    };
+
     mutable std::mutex mutex_;
     std::function<void()> on_room_;
-    std::deque<RawBytes> batches_;
+    std::deque<Entry> batches_;
     std::vector<RawBytes> spare_;
     std::size_t spare_bytes_ = 0;
     std::size_t bytes_ = 0;

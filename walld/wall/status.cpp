@@ -88,6 +88,7 @@ json node_json(const Node& node) {
             {"tiles", node.config->tiles.size()},
             {"frames", node.stats.frames()},
             {"bytes_received", node.stats.bytes_received()},
+            {"bytes_handed_on", node.stats.bytes_handed_on()},
             {"commands", node.stats.commands()},
             {"gl_errors", node.stats.gl_errors()},
             {"array_elements", node.stats.array_elements()},

@@ -8,6 +8,7 @@
 #include "common/base/assert.h"
 #include "common/base/lossy_pixels.h"
 #include "common/wire/limits.h"
+#include "common/wire/parcel.h"
 #include "walld/wall/caps.h"
 #include "walld/wall/messages.h"
 #include "walld/wall/placement.h"
@@ -82,7 +83,7 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
     for (auto& [id, session] : sessions_) {
         if (anew || (!same && !has_ticket(hello, id, session.tickets[index]))) session.tickets.erase(index);
         hand_out_ticket(id, session, index);
-        out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
+        out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session)));
         tell_peers(id, session);
     }
     out_.to_node(index, stacking_message(index));
@@ -169,14 +170,17 @@ void Wall::welcome_node(NodeIndex node) {
             tell_pattern(node, tile.slot, found->second);
 }
 
-proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) const {
+/// One that has a ticket of the session.
+proto::NodeUp Wall::node_up_message(NodeIndex node, const SessionEntry& session) const {
     proto::NodeUp up;
     up.set_node(node.value);
     up.set_address(nodes_[node].hello.address());
-    up.set_ticket(ticket);
+    up.set_ticket(session.tickets.at(node));
     up.set_incarnation(nodes_[node].incarnation);
     up.set_key(nodes_[node].hello.key());
     up.set_renders(nodes_[node].config->roles.render && nodes_reach_each_other());
+    up.set_composes(nodes_[node].config->roles.compose && nodes_reach_each_other());
+    up.set_hands_on(!nodes_[node].hello.key().empty() && nodes_hand_on(session));
     return up;
 }
 
@@ -286,10 +290,9 @@ void Wall::hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node) 
         message.set_members(session.group->size());
         for (const Rank rank : session.group->left()) message.add_left(rank);
     }
-    if (session.sort_last)
+    if (have_peers(session))
         for (const Node& peer : nodes_)
-            if (peer.up && peer.config->roles.render && !peer.hello.key().empty())
-                message.add_peer_keys(peer.hello.key());
+            if (peer.up && !peer.hello.key().empty()) message.add_peer_keys(peer.hello.key());
     out_.to_node(node, make(&proto::Envelope::mutable_ticket, message));
 }
 
@@ -301,28 +304,38 @@ bool Wall::nodes_reach_each_other() const {
     return keys == 0 || keys == up;
 }
 
-/// Whoever draws for others is told where they are, and they, by their tickets, who may come. The program hears whether
-/// they can.
+/// What goes to several nodes on other machines is best handed on from one to the next. But members of a parallel
+/// program wait for each other on each node, and so may not make nodes wait for each other.
+bool Wall::nodes_hand_on(const SessionEntry& session) const {
+    const auto has_key = [](const Node& node) { return node.up && !node.hello.key().empty(); };
+    const auto keys = std::ranges::count_if(nodes_, has_key);
+    return keys > 1 && keys <= static_cast<std::ptrdiff_t>(wire::kMostHandedTo) && !session.group;
+}
+
+bool Wall::have_peers(const SessionEntry& session) const { return session.sort_last || nodes_hand_on(session); }
+
+/// Whoever brings others something is told where they are, and they, by their tickets, who may come. The program hears
+/// whether they can.
 void Wall::tell_peers(SessionId id, SessionEntry& session) {
-    if (!session.sort_last) return;
+    if (!have_peers(session)) return;
     for (const NodeIndex i : nodes_.ids()) {
         if (!nodes_[i].up || !session.tickets.contains(i)) continue;
         hand_out_ticket(id, session, i);
-        out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(i, session.tickets.at(i))));
+        out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(i, session)));
     }
     list_peers(id, session);
 }
 
-/// Who draws for others hears where they are; who shows what they draw, whether they are there.
+/// Who brings others something hears where they are; who gets it, whether they are there.
 void Wall::list_peers(SessionId id, const SessionEntry& session) {
-    if (!session.sort_last) return;
-    proto::PartialPeers peers;
+    if (!have_peers(session)) return;
+    proto::Peers peers;
     peers.set_session(id.value);
     const auto has_it = [&](NodeIndex i) { return nodes_[i].up && session.tickets.contains(i); };
     for (const NodeIndex i : nodes_.ids())
-        if (has_it(i)) *peers.add_nodes() = node_up_message(i, session.tickets.at(i));
+        if (has_it(i)) *peers.add_nodes() = node_up_message(i, session);
     for (const NodeIndex i : nodes_.ids())
-        if (has_it(i)) out_.to_node(i, make(&proto::Envelope::mutable_partial_peers, peers));
+        if (has_it(i)) out_.to_node(i, make(&proto::Envelope::mutable_peers, peers));
 }
 
 void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank, const proto::Resume& again) {
@@ -341,7 +354,7 @@ void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank, 
         const bool has_it = std::ranges::any_of(again.tickets(), [&](const proto::Resume::NodeTicket& told) {
             return told.node() == i.value && told.ticket() == session.tickets.at(i);
         });
-        if (same_for_all || has_it) *welcome.add_nodes() = node_up_message(i, session.tickets.at(i));
+        if (same_for_all || has_it) *welcome.add_nodes() = node_up_message(i, session);
         caps.push_back(&nodes_[i].hello.caps());
     }
     *welcome.mutable_caps() = common_caps(caps);

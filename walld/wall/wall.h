@@ -322,7 +322,7 @@ private:
     SessionEntry* find(SessionId id);
     SurfaceEntry* find(SurfaceId surface, SessionId session);
     SurfaceEntry& add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message);
-    proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
+    proto::NodeUp node_up_message(NodeIndex node, const SessionEntry& session) const;
     bool take_nodes();
     void end_crossed_recordings();
     void tell_pattern(NodeIndex node, std::uint32_t slot, const proto::TilePattern& pattern);
@@ -345,6 +345,8 @@ private:
     void welcome_client(SessionId id, const SessionEntry& session, Rank rank, const proto::Resume& again = {});
     void hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node);
     bool nodes_reach_each_other() const;
+    bool nodes_hand_on(const SessionEntry& session) const;
+    bool have_peers(const SessionEntry& session) const;
     void tell_peers(SessionId id, SessionEntry& session);
     void list_peers(SessionId id, const SessionEntry& session);
     proto::Quota quota_of_programs() const;

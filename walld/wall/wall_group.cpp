@@ -89,7 +89,7 @@ std::set<NodeIndex> Wall::nodes_of(const SessionEntry& session, const geom::Rect
 void Wall::add_nodes(proto::Placement& placement, const SessionEntry& session) const {
     placement.clear_nodes();
     for (const NodeIndex i : nodes_.ids())
-        if (nodes_[i].up) *placement.add_nodes() = node_up_message(i, session.tickets.at(i));
+        if (nodes_[i].up) *placement.add_nodes() = node_up_message(i, session);
 }
 
 proto::Placement Wall::placement_for_all(const SurfaceKey& key) const {

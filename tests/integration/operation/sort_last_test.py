@@ -84,6 +84,41 @@ class ProgramsThatAreDealt(unittest.TestCase):
                 wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
                 self.assertEqual(self.partials(wall, session)["missed"], 0)
 
+    def test_their_pictures_are_the_same_whoever_composes_them(self) -> None:
+        expected = self.without(FRAME)
+        drawing = {f"draws{i}": 'role = "render"' for i in range(3)}
+        showing = {f"shows{row}": 'role = "display"' for row in range(2)}
+        walls = {"those that draw": {name: 'role = ["render", "compose"]' for name in drawing} | showing,
+                 "those that show": drawing | {name: 'role = ["compose", "display"]' for name in showing},
+                 "one more": drawing | showing | {"composes": 'role = "compose"'},
+                 "all do all": {name: 'role = ["render", "compose", "display"]' for name in drawing | showing}}
+        for who, keys in walls.items():
+            plan = plan_of(3) | ({"composes": {}} if "composes" in keys else {})
+            with self.subTest(who), PlannedWall(plan, node_keys=keys, environment=QUIET, swap_timeout_ms=5000) as wall:
+                app, session = self.start(wall, *MARCH)
+                given = self.picture(wall, session, FRAME)
+                self.assertEqual(int((given != expected).any(axis=2).sum()), 0)
+                wall._until(lambda: self.partials(wall, session)["merged"] > 0, "nodes merge what others draw", "walld")
+                self.assertEqual(self.partials(wall, session)["missed"], 0)
+
+    def test_a_node_that_composes_may_go(self) -> None:
+        keys = keys_of(2) | {f"composes{i}": 'role = "compose"' for i in range(2)}
+        wall = self.enterContext(PlannedWall(plan_of(2) | {f"composes{i}": {} for i in range(2)}, node_keys=keys,
+                                             environment=QUIET, swap_timeout_ms=5000, die_with_parent=True))
+        app, session = self.start(wall, *MARCH)
+        self.picture(wall, session, 2)
+        wall.hold(session, False)
+        wall.wait(session, 10)
+        wall.daemons["composes0"].kill()
+        wall.daemons["composes0"].wait()
+        killed = time.monotonic()
+        wall.wait(session, wall.wait(session, 1) + 5)
+        self.assertLess(time.monotonic() - killed, 1.0, "the other one has its part")
+        wall.hold(session)
+        after = self.picture(wall, session, 1)
+        frame = next(s for s in wall.sessions() if s["id"] == session)["surfaces"][0]["frame"]
+        self.assertEqual(int((after != self.without(frame)).any(axis=2).sum()), 0)
+
     def test_a_wall_may_have_it_tried_for_all(self) -> None:
         """Whether it is kept is a matter of speed; that it is tried is seen where a program waits for its nodes."""
         expected = self.without(FRAME, LIGHT)

@@ -66,13 +66,14 @@ struct FakeNode {
     };
     explicit FakeNode(const std::string& name) : listener(name) {}
 
-    /// A client comes and is welcomed, while `meanwhile` is called again and again.
+    /// A client comes and is welcomed, while `meanwhile` is called again and again. `number`: of its stream, four
+    /// bytes; none: it is of this machine, and ends with its connection.
     template <class Call>
-    bool welcome(Call&& meanwhile, std::chrono::milliseconds limit = kPatience) {
+    bool welcome(Call&& meanwhile, std::chrono::milliseconds limit = kPatience, const std::string& number = "") {
         for (const auto end = Clock::now() + limit; !stream && Clock::now() < end; meanwhile())
             stream = listener.accept(20ms);
         if (!stream || receive().kind != FrameKind::hello) return false;
-        send(FrameKind::welcome, "");
+        send(FrameKind::welcome, number);
         return true;
     }
     void send(FrameKind kind, const std::string& text) {

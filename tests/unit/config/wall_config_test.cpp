@@ -142,13 +142,17 @@ TEST(WallConfig, ANodeSaysWhatItDoesForProgramsThatAreDealt) {
     };
     const auto usual = node(""), shows = node("role = 'display'"), draws = node("role = ['render']", false);
     ASSERT_TRUE(usual && shows && draws);
-    EXPECT_EQ(usual->nodes[0].roles, (Roles{.render = true, .display = true}));
+    EXPECT_EQ(usual->nodes[0].roles, (Roles{.render = true, .display = true, .compose = false}));
     EXPECT_EQ(node("role = ['display', 'render']")->nodes[0], usual->nodes[0]);
-    EXPECT_EQ(shows->nodes[0].roles, (Roles{.render = false, .display = true}));
+    EXPECT_EQ(shows->nodes[0].roles, (Roles{.render = false, .display = true, .compose = false}));
+    const auto composes = node("role = ['compose']", false);
+    ASSERT_TRUE(composes);
+    EXPECT_EQ(composes->nodes[0].roles, (Roles{.render = false, .display = false, .compose = true}));
     EXPECT_EQ(draws->nodes[0].roles, (Roles{.render = true, .display = false}));
     EXPECT_EQ(node("role = 'draw'").error().message,
-              "wall.toml:3: 'role' is 'draw': expected \"render\", \"display\" or both in a list");
-    EXPECT_EQ(node("role = []").error().message, "wall.toml:3: 'role' is empty: expected \"render\" or \"display\"");
+              "wall.toml:3: 'role' is 'draw': expected \"render\", \"compose\" or \"display\", or several in a list");
+    EXPECT_EQ(node("role = []").error().message,
+              "wall.toml:3: 'role' is empty: expected \"render\", \"compose\" or \"display\"");
     EXPECT_EQ(node("role = 'render'").error().message,
               "wall.toml:3: node 'n' has tiles: expected \"display\" among its roles");
 }

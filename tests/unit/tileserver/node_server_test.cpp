@@ -10,6 +10,7 @@
 #include <sys/mman.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
@@ -26,6 +27,7 @@
 #include "common/wire/batch.h"
 #include "common/wire/frame_reader.h"
 #include "common/wire/limits.h"
+#include "common/wire/parcel.h"
 #include "common/wire/ring.h"
 #include "gen/glapi/wire.gen.h"
 #include "gen/glstate/state.gen.h"
@@ -98,6 +100,7 @@ private:
 class Client {
 public:
     explicit Client(const net::Address& node) : fd_(std::move(*net::connect_to(node, kPatience))) {}
+    explicit Client(UniqueFd connection) : fd_(std::move(connection)) {}
     void send(wire::FrameKind kind, std::span<const std::byte> payload) {
         write_all(fd_.get(), wire::whole_frame(kind, payload));
     }
@@ -628,6 +631,189 @@ TEST_F(ANodeOfAnotherMachine, SendsAgainWhatHasNotComeToTheClient) {
         if (seen) again.batch(one_frame({0, 1, 0, 1}, 2));
         again.expect(wire::FrameKind::swap_done);
     }
+}
+
+// ---- parcels that nodes hand on to each other ----
+
+class ANodeThatHandsOn : public ANodeOfAnotherMachine {
+protected:
+    static constexpr std::uint32_t kSelf = 0, kOther = 3;
+
+    /// Comes as another node that hands parcels on.
+    static void come_as_peer(Client& peer, std::uint32_t session = 1) {
+        proto::DataHello hello;
+        hello.set_version(glapi::kStreamVersion);
+        hello.set_session(session);
+        hello.set_ticket("secret" + std::to_string(session));
+        hello.set_parcels(true);
+        const std::string bytes = hello.SerializeAsString();
+        peer.send(wire::FrameKind::hello, std::as_bytes(std::span(bytes)));
+    }
+    static void awaits(Client& client, std::uint32_t number) {
+        const std::array<std::uint32_t, 2> words{number, kOther};
+        client.send(wire::FrameKind::awaited, std::as_bytes(std::span(words)));
+    }
+    static std::vector<std::byte> batch_of(const wire::PackBuffer& buffer) {
+        std::vector<std::byte> batch;
+        wire::append_batch(batch, {ContextId(1), buffer.opcodes(), buffer.operands()});
+        return batch;
+    }
+    /// Bytes `first` to `behind` of a batch as a piece.
+    static void send_piece(Client& from, std::uint32_t number, std::span<const std::byte> batch,
+                           std::vector<NodeIndex> route, std::size_t position, std::size_t first, std::size_t behind) {
+        auto piece = wire::encode_parcel_lead({number, static_cast<std::uint32_t>(batch.size()), 0,
+                                               static_cast<std::uint32_t>(first), position, std::move(route)});
+        piece.insert(piece.end(), batch.begin() + static_cast<std::ptrdiff_t>(first),
+                     batch.begin() + static_cast<std::ptrdiff_t>(behind));
+        from.send(wire::FrameKind::parcel, piece);
+    }
+    static void bring(Client& peer, std::uint32_t number, const wire::PackBuffer& buffer) {
+        const auto batch = batch_of(buffer);
+        const std::vector route{NodeIndex(kOther), NodeIndex(kSelf)};
+        send_piece(peer, number, batch, route, 1, 0, batch.size() / 2);
+        send_piece(peer, number, batch, route, 1, batch.size() / 2, batch.size());
+    }
+    /// walld tells where the other node is.
+    void tell_of_peer(const std::string& address) {
+        proto::Envelope envelope;
+        auto& peers = *envelope.mutable_peers();
+        peers.set_session(1);
+        auto& node = *peers.add_nodes();
+        node.set_node(kOther);
+        node.set_address(address);
+        node.set_ticket("there");
+        walld_->send(envelope);
+    }
+    /// The program hands a frame to this node, for it and the other one.
+    static void send_frame_to_both(Client& client, std::uint32_t frame) {
+        const auto batch = batch_of(one_frame({1, 0, 0, 1}, frame));
+        send_piece(client, frame, batch, {NodeIndex(kSelf), NodeIndex(kOther)}, 0, 0, batch.size());
+    }
+    static std::array<std::uint32_t, 2> words_of(const std::optional<wire::Frame>& frame) {
+        std::array<std::uint32_t, 2> words{};
+        if (frame && frame->payload.size() <= sizeof words)
+            std::memcpy(words.data(), frame->payload.data(), frame->payload.size());
+        return words;
+    }
+};
+
+TEST_F(ANodeThatHandsOn, DrawsNothingBehindAParcelBeforeItHasCome) {
+    stack_session(1);
+    Client client(node_address()), peer(node_address());
+    come(client, 1);
+    awaits(client, 5);
+    client.batch(one_frame({0, 1, 0, 1}, 2));
+    come_as_peer(peer);
+    wire::PackBuffer early = one_frame({0, 0, 1, 1}, 3);
+    bring(peer, 5, one_frame({1, 0, 0, 1}, 1));
+    const auto said = client.next();
+    ASSERT_TRUE(said && said->kind == wire::FrameKind::handed_on);
+    EXPECT_EQ(words_of(said)[0], 5u);
+    for (const std::uint32_t frame : {1u, 2u}) {
+        const auto done = client.next();
+        ASSERT_TRUE(done && done->kind == wire::FrameKind::swap_done);
+        EXPECT_EQ(words_of(done)[1], frame);
+    }
+    bring(peer, 6, early);  // and then its place
+    client.expect(wire::FrameKind::handed_on);
+    awaits(client, 6);
+    client.expect(wire::FrameKind::swap_done);
+}
+
+TEST_F(ANodeThatHandsOn, HandsOnWhatItGets) {
+    stack_session(1);
+    auto listener = std::move(*net::listen_on(*net::Address::parse("unix:" + folder_ + "/other.sock")));
+    tell_of_peer("unix:" + folder_ + "/other.sock");
+    Client client(node_address());
+    come(client, 1);
+    send_frame_to_both(client, 1);
+    client.expect(wire::FrameKind::swap_done);
+    ASSERT_TRUE(readable(listener.get()));
+    Client other(UniqueFd(::accept(listener.get(), nullptr, nullptr)));
+    const auto greeting = other.next();
+    ASSERT_TRUE(greeting && greeting->kind == wire::FrameKind::hello);
+    proto::DataHello hello;
+    ASSERT_TRUE(hello.ParseFromArray(greeting->payload.data(), static_cast<int>(greeting->payload.size())));
+    EXPECT_TRUE(hello.parcels() && !hello.partials());
+    EXPECT_EQ(hello.ticket(), "there");
+    const auto handed = other.next();
+    ASSERT_TRUE(handed && handed->kind == wire::FrameKind::parcel);
+    const auto piece = wire::read_parcel_piece(handed->payload);
+    ASSERT_TRUE(piece);
+    EXPECT_EQ(piece->lead.position, 1u);
+    EXPECT_TRUE(std::ranges::equal(piece->content, batch_of(one_frame({1, 0, 0, 1}, 1))));
+}
+
+TEST_F(ANodeThatHandsOn, TellsTheProgramWhomItCannotReach) {
+    stack_session(1);
+    Client client(node_address());
+    come(client, 1);
+    const auto not_handed_on = [&](std::uint32_t number) {
+        std::optional<wire::Frame> frame;
+        do frame = client.next();
+        while (frame && frame->kind == wire::FrameKind::swap_done);
+        return frame && frame->kind == wire::FrameKind::not_handed_on && words_of(frame) == std::array{number, kOther};
+    };
+    send_frame_to_both(client, 1);
+    EXPECT_TRUE(not_handed_on(1)) << "walld has not told where it is";
+    tell_of_peer("unix:" + folder_ + "/nobody.sock");
+    send_frame_to_both(client, 2);
+    EXPECT_TRUE(not_handed_on(2)) << "nobody is there";
+}
+
+TEST_F(ANodeThatHandsOn, EndsAStreamThatWaitsForWhatDoesNotCome) {
+    stack_session(1);
+    Client client(node_address());
+    const auto number = come(client, 1);
+    awaits(client, 1);
+    awaits(client, 2);
+    {
+        Client peer(node_address());
+        come_as_peer(peer);
+        bring(peer, 1, one_frame({1, 0, 0, 1}, 1));
+        client.expect(wire::FrameKind::handed_on);
+        client.expect(wire::FrameKind::swap_done);
+    }
+    EXPECT_FALSE(client.next()) << "its connection is closed";
+    Client again(node_address());
+    come_again(again, 1, number, 1);
+    EXPECT_THAT(again.expect_error(), ::testing::HasSubstr("is over"));
+    Client anew(node_address());
+    come(anew, 1);
+    anew.batch(one_frame({1, 0, 0, 1}, 1));
+    anew.expect(wire::FrameKind::swap_done);
+}
+
+TEST_F(ANodeThatHandsOn, APeerThatIsGoneByWalldsWordIsNotWaitedFor) {
+    stack_session(1);
+    tell_of_peer("unix:" + folder_ + "/nobody.sock");
+    Client client(node_address());
+    come(client, 1);
+    awaits(client, 1);
+    client.batch(one_frame({1, 0, 0, 1}, 1));
+    proto::Envelope nobody;
+    nobody.mutable_peers()->set_session(1);
+    std::this_thread::sleep_for(100ms);  // until it awaits it
+    walld_->send(nobody);
+    EXPECT_FALSE(client.next());
+}
+
+TEST_F(ANodeThatHandsOn, ABadPeerEndsAlone) {
+    stack_session(1);
+    Client client(node_address());
+    come(client, 1);
+    Client noise(node_address()), of_another(node_address()), gap(node_address());
+    come_as_peer(noise);
+    noise.send(wire::FrameKind::parcel, std::vector<std::byte>(5));
+    EXPECT_THAT(noise.expect_error(), ::testing::HasSubstr("parcel"));
+    come_as_peer(of_another, 2);
+    bring(of_another, 1, one_frame({1, 0, 0, 1}, 1));
+    come_as_peer(gap);
+    const auto batch = batch_of(one_frame({1, 0, 0, 1}, 1));
+    send_piece(gap, 1, batch, {NodeIndex(kOther), NodeIndex(kSelf)}, 1, 8, batch.size());
+    EXPECT_THAT(gap.expect_error(), ::testing::HasSubstr("missing"));
+    client.batch(one_frame({1, 0, 0, 1}, 1));
+    client.expect(wire::FrameKind::swap_done);
 }
 
 TEST_F(ANodeOfAnotherMachine, GoesOnWithNoStreamOfAnotherSessionNorWithOneThatIsOver) {

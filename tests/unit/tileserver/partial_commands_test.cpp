@@ -40,6 +40,17 @@ struct Receiver {
 };
 constexpr Receiver kReceivers[] = {{9, 0, 0, 0, 67, kHeight}, {9, 1, 67, 0, 93, kHeight}};
 
+/// Of the layers of those two, each in two parts, for nodes 6 and 7 to compose.
+struct Band {
+    std::uint32_t layer, node, name;
+    std::int32_t x, y, width, height;
+};
+constexpr std::uint32_t kCompositors[] = {6, 7};
+constexpr Band kBands[] = {{0, 6, 64, 0, 0, 67, 50},
+                           {0, 7, 65, 0, 50, 67, kHeight - 50},
+                           {1, 6, 66, 67, 0, 93, 50},
+                           {1, 7, 67, 67, 50, 93, kHeight - 50}};
+
 class PartialPicturesOfNodes : public ::testing::Test {
 protected:
     void SetUp() override {
@@ -78,23 +89,42 @@ protected:
         session.expect_run(batch);
     }
     /// Draws two of the triangles for others, and sends them.
-    void deal(TestSession& renderer, std::uint32_t from, int first, std::uint32_t sequence = 1, GLenum by = GL_LESS) {
+    void deal(TestSession& renderer, std::uint32_t from, int first, std::uint32_t sequence = 1, GLenum by = GL_LESS,
+              std::span<const Band> bands = {}) {
         Batch begin;
         pack::PartialBegin(begin.buffer(), kSurface, by, std::as_bytes(std::span(kReceivers)));
         renderer.expect_run(begin);
         for (const int which : {first, first + 1}) draw(renderer, kPartial, which, true, by == GL_BLEND);
         Batch send;
-        pack::PartialSend(send.buffer(), kSurface, sequence, from, RequestId(5));
+        pack::PartialSend(send.buffer(), kSurface, sequence, from, RequestId(5), std::as_bytes(bands));
         renderer.expect_run(send);
         EXPECT_EQ(renderer.replies[RequestId(5)].size(), sizeof(std::uint64_t)) << "how long it took";
     }
-    void deliver(TestSession& renderer) {
+    void deliver(TestSession& renderer) { deliver(renderer, NodeIndex(9), SessionId(1)); }
+    /// What it has sent to that node, as that one's session.
+    void deliver(TestSession& renderer, NodeIndex to_node, SessionId session) {
         for (auto& [to, message] : renderer.partials) {
-            EXPECT_EQ(to, NodeIndex(9));
-            const auto put = box_.put(SessionId(1), std::move(message));
+            if (to != to_node) continue;
+            const auto put = box_.put(session, std::move(message));
             EXPECT_TRUE(put) << put.error().message;
         }
-        renderer.partials.clear();
+        std::erase_if(renderer.partials, [&](const auto& sent) { return sent.first == to_node; });
+    }
+    /// Node `self` composes its bands of what those nodes have drawn, for node 9.
+    static Batch composing(std::uint32_t self, std::span<const std::uint32_t> nodes, std::uint32_t sequence = 1,
+                           GLenum by = GL_LESS) {
+        std::vector<std::uint32_t> words(nodes.begin(), nodes.end());
+        for (const Band& band : kBands) {
+            if (band.node != self) continue;
+            for (const std::uint32_t word :
+                 {band.name, 9u, band.layer, static_cast<std::uint32_t>(band.x), static_cast<std::uint32_t>(band.y),
+                  static_cast<std::uint32_t>(band.width), static_cast<std::uint32_t>(band.height)})
+                words.push_back(word);
+        }
+        Batch batch;
+        pack::PartialCompose(batch.buffer(), kSurface, sequence, by, self, static_cast<std::uint32_t>(nodes.size()),
+                             std::as_bytes(std::span(words)));
+        return batch;
     }
     static Batch merging(std::span<const std::uint32_t> nodes, std::uint32_t sequence = 1, GLenum func = GL_LESS) {
         Batch batch;
@@ -179,6 +209,57 @@ TEST_F(PartialPicturesOfNodes, GoOverWhatTheTilesHold) {
     EXPECT_EQ(differ(shows, alone), 0u);
 }
 
+TEST_F(PartialPicturesOfNodes, AreTheSameIfOthersPutThemTogether) {
+    TestSession shows(*node_.node, SessionId(1)), alone(*node_.node, SessionId(2)), first(*node_.node, SessionId(3)),
+        second(*node_.node, SessionId(4)), upper(*node_.node, SessionId(6)), lower(*node_.node, SessionId(7));
+    for (TestSession* session : {&shows, &alone, &first, &second, &upper, &lower}) open(*session, wire::kTilesOnly);
+    std::uint32_t sequence = 0;
+    for (const GLenum by : {GL_LESS, GL_BLEND}) {
+        const bool blends = by == GL_BLEND;
+        ++sequence;
+        for (TestSession* session : {&shows, &alone}) clear(*session);
+        for (int which = 0; which < 4; ++which) draw(alone, 3, which, false, blends);
+        deal(first, kRenderers[0], 0, sequence, by, kBands);
+        deal(second, kRenderers[1], 2, sequence, by, kBands);
+        for (TestSession* renderer : {&first, &second}) {
+            EXPECT_EQ(renderer->partials.size(), std::size(kBands));
+            deliver(*renderer, NodeIndex(6), SessionId(6));
+            deliver(*renderer, NodeIndex(7), SessionId(7));
+            EXPECT_TRUE(renderer->partials.empty()) << "all goes to those who compose";
+        }
+        upper.expect_run(composing(6, kRenderers, sequence, by));
+        lower.expect_run(composing(7, kRenderers, sequence, by));
+        for (TestSession* compositor : {&upper, &lower}) {
+            EXPECT_EQ(compositor->partials.size(), 2u) << "one for each tile";
+            deliver(*compositor);
+        }
+        shows.expect_run(merging(kCompositors, sequence, by));
+        if (blends) EXPECT_LE(apart(read(shows), read(alone)), 2) << "each part is rounded by itself";
+        else EXPECT_EQ(differ(shows, alone), 0u);
+    }
+    EXPECT_EQ(shows.session.work.partials_missed + upper.session.work.partials_missed, 0u);
+}
+
+TEST_F(PartialPicturesOfNodes, AreComposedAlsoWhereNothingWasDrawnOrDoesNotCome) {
+    TestSession shows(*node_.node, SessionId(1)), first(*node_.node, SessionId(3)), upper(*node_.node, SessionId(6));
+    for (TestSession* session : {&shows, &first, &upper}) open(*session, wire::kTilesOnly);
+    clear(shows);
+    const auto before = read(shows);
+    Batch begin;
+    pack::PartialBegin(begin.buffer(), kSurface, GL_LESS, std::as_bytes(std::span(kReceivers)));
+    pack::PartialSend(begin.buffer(), kSurface, 1, kRenderers[0], RequestId(), std::as_bytes(std::span(kBands)));
+    first.expect_run(begin);
+    deliver(first, NodeIndex(6), SessionId(6));
+    box_.set_nodes(SessionId(6), {NodeIndex(kRenderers[1])});
+    box_.set_nodes(SessionId(6), {});  // it is gone
+    upper.expect_run(composing(6, kRenderers));
+    EXPECT_EQ(upper.session.work.partials_missed, 2u);
+    deliver(upper);
+    shows.expect_run(merging(std::span(kCompositors).first(1)));
+    EXPECT_EQ(read(shows), before);
+    EXPECT_EQ(shows.session.work.partials_missed, 0u);
+}
+
 TEST_F(PartialPicturesOfNodes, AreWaitedFor) {
     TestSession shows(*node_.node, SessionId(1)), first(*node_.node, SessionId(3));
     open(shows, wire::kTilesOnly);
@@ -241,6 +322,26 @@ TEST_F(PartialPicturesOfNodes, OfWhatIsNotThereEndTheStream) {
                 HasSubstr("not in the window"));
     EXPECT_THAT(refused([](auto& b) { pack::PartialMerge(b, kSurface, 1, GL_ALWAYS, 1, 0, {}); }),
                 HasSubstr("by nothing"));
+    constexpr Band kNoLayer[] = {{2, 6, 64, 0, 0, 10, 10}}, kBeside[] = {{0, 6, 64, 60, 0, 20, 10}},
+                   kBehind[] = {{0, 6, 64, 0, 0, 10, kHeight + 1}};
+    const auto bands = [&](std::span<const Band> these) {
+        return refused([&](auto& b) {
+            pack::PartialBegin(b, kSurface, GL_LESS, std::as_bytes(std::span(kReceivers)));
+            pack::PartialSend(b, kSurface, 1, 4, RequestId(), std::as_bytes(these));
+        });
+    };
+    EXPECT_THAT(bands(kNoLayer), HasSubstr("in none of the layers"));
+    EXPECT_THAT(bands(kBeside), HasSubstr("in none of the layers"));
+    EXPECT_THAT(bands(kBehind), HasSubstr("not in the window"));
+    const auto composed = [&](GLenum by, std::uint32_t nodes, std::span<const std::byte> parts) {
+        return refused([&](auto& b) { pack::PartialCompose(b, kSurface, 1, by, 6, nodes, parts); });
+    };
+    const std::array<std::byte, 32> words{};
+    EXPECT_THAT(composed(GL_ALWAYS, 1, words), HasSubstr("by nothing"));
+    EXPECT_THAT(composed(GL_LESS, 9, words), HasSubstr("too many nodes"));
+    EXPECT_THAT(composed(GL_LESS, 8, words), HasSubstr("of nothing"));
+    EXPECT_THAT(composed(GL_LESS, 2, words), HasSubstr("whole number of bands"));
+    EXPECT_THAT(composed(GL_LESS, 1, words), HasSubstr("not in the window"));
 }
 
 }  // namespace

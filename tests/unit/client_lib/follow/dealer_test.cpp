@@ -22,6 +22,7 @@ using ::testing::IsEmpty;
 constexpr NodeIndex kShows(0), kDraws(1);
 constexpr ContextId kContext(1);
 constexpr std::uint64_t kLeft = 1, kRight = 2;
+constexpr std::size_t kBandBytes = 28;
 
 struct NoObjects final : UsedObjects {
     void for_each_used(const std::function<void(const Object&)>&) override {}
@@ -72,6 +73,7 @@ protected:
         std::vector<Op> ops;  ///< without state
         std::vector<std::uint64_t> blocks;
         std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;  ///< of pieces
+        std::size_t bands = 0;                                        ///< of what was drawn
     };
     /// What has come to the node or waits to be sent to it, since it was last asked.
     Packed packed(NodeIndex index) {
@@ -95,7 +97,11 @@ protected:
         if (op == Op::PieceRange) packed.ranges.emplace_back(words[0], words[1]);
         at += glapi::kOpFixedBytes[static_cast<std::size_t>(op)];
         if (op == Op::PartialBegin) at += words[2];
-        if (op == Op::PartialMerge) at += words[5];
+        if (op == Op::PartialMerge || op == Op::PartialCompose) at += words[5];
+        if (op == Op::PartialSend) {
+            packed.bands += words[4] / kBandBytes;
+            at += words[4];
+        }
         if (op == Op::State) at += glstate::element_bytes(words[0]);
         if (op != Op::State && op != Op::StateSmall && op != Op::StateRecall) packed.ops.push_back(op);
     }
@@ -172,6 +178,29 @@ TEST_F(ADealer, DividesAFrameAsTheOneBeforeHasCost) {
                                                Op::PartialSend, Op::PartialMerge}));
     EXPECT_EQ(packed(kDraws).ops,
               behind_target({Op::PartialBegin, Op::Block, Op::Begin, Op::Block, Op::Begin, Op::PartialSend}));
+}
+
+TEST_F(ADealer, LetsNodesComposeThatMay) {
+    nodes[kShows].info.composes = nodes[kDraws].info.composes = true;
+    draw(std::nullopt, 1000, 10);
+    swap();
+    const Packed shows = packed(kShows), draws = packed(kDraws);
+    EXPECT_EQ(shows.ops, behind_target({Op::PartialBegin, Op::Block, Op::PieceRange, Op::Begin, Op::PartialSend,
+                                        Op::PartialCompose, Op::PartialMerge}));
+    EXPECT_EQ(draws.ops, behind_target({Op::PartialBegin, Op::Block, Op::PieceRange, Op::Begin, Op::PartialSend,
+                                        Op::PartialCompose}));
+    EXPECT_EQ(shows.bands, 4u) << "two of each of two layers";
+    EXPECT_EQ(draws.bands, 4u);
+}
+
+TEST_F(ADealer, HasNothingComposedThatOneNodeHasDrawn) {
+    nodes[kDraws].info.composes = true;
+    draw(std::nullopt, 5);
+    swap();
+    const Packed shows = packed(kShows);
+    EXPECT_EQ(shows.ops, behind_target({Op::PartialBegin, Op::Block, Op::Begin, Op::PartialSend, Op::PartialMerge}));
+    EXPECT_EQ(shows.bands, 0u);
+    EXPECT_THAT(packed(kDraws).ops, IsEmpty());
 }
 
 TEST_F(ADealer, DividesALargeDrawByItsPieces) {

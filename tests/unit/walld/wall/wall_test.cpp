@@ -33,12 +33,13 @@ public:
 
 class TheWall : public ::testing::Test {
 protected:
-    NodeIndex join(const std::string& name, std::uint32_t pid = 100) {
+    NodeIndex join(const std::string& name, std::uint32_t pid = 100, const std::string& key = "") {
         proto::NodeHello hello;
         hello.set_version(wire::kProtocolVersion);
         hello.set_name(name);
         hello.set_pid(pid);
         hello.set_address("unix:/tmp/" + name);
+        hello.set_key(key);
         return *wall_.node_joins(hello, now_);
     }
     SessionId open(const proto::ClientHello& hello = {}) {
@@ -153,7 +154,7 @@ TEST_F(TheWall, TellsNodesOfASortLastProgramOfEachOther) {
     join("left");
     join("right");
     const auto usual = open();
-    EXPECT_TRUE(std::ranges::none_of(out_.nodes[kLeft], &proto::Envelope::has_partial_peers));
+    EXPECT_TRUE(std::ranges::none_of(out_.nodes[kLeft], &proto::Envelope::has_peers));
     proto::ClientHello hello;
     hello.set_version(wire::kProtocolVersion);
     hello.set_sort_last(true);
@@ -162,9 +163,8 @@ TEST_F(TheWall, TellsNodesOfASortLastProgramOfEachOther) {
     const auto& welcome = out_.clients[id][0].client_welcome();
     const auto told = [&](NodeIndex node) {
         const auto& heard = out_.nodes[node];
-        const auto last =
-            std::find_if(heard.rbegin(), heard.rend(), [](const auto& m) { return m.has_partial_peers(); });
-        return last == heard.rend() ? proto::PartialPeers() : last->partial_peers();
+        const auto last = std::find_if(heard.rbegin(), heard.rend(), [](const auto& m) { return m.has_peers(); });
+        return last == heard.rend() ? proto::Peers() : last->peers();
     };
     for (const NodeIndex node : {kLeft, kRight}) {
         ASSERT_EQ(told(node).nodes_size(), 2);
@@ -178,6 +178,32 @@ TEST_F(TheWall, TellsNodesOfASortLastProgramOfEachOther) {
     join("right", 7);
     ASSERT_EQ(told(kLeft).nodes_size(), 2);
     EXPECT_NE(told(kLeft).nodes(1).ticket(), welcome.nodes(1).ticket()) << "it is another process";
+}
+
+TEST_F(TheWall, LetsNodesOfOtherMachinesHandOn) {
+    join("left", 1, "a key");
+    const auto id = open();
+    EXPECT_FALSE(out_.clients[id][0].client_welcome().nodes(0).hands_on()) << "there is nobody else";
+    join("right", 2, "another key");
+    for (const NodeIndex node : {kLeft, kRight}) {
+        const auto& heard = out_.clients[id];
+        const auto told = std::find_if(heard.rbegin(), heard.rend(), [&](const auto& message) {
+            return message.has_node_up() && message.node_up().node() == node.value;
+        });
+        ASSERT_NE(told, heard.rend());
+        EXPECT_TRUE(told->node_up().hands_on());
+        EXPECT_TRUE(std::ranges::any_of(out_.nodes[node], [](const auto& m) { return m.peers().nodes_size() == 2; }));
+        EXPECT_TRUE(std::ranges::any_of(out_.nodes[node], [](const auto& m) {
+            return m.ticket().peer_keys_size() == 2;
+        })) << "each knows who may come to it";
+    }
+    proto::ClientHello parallel;
+    parallel.set_version(wire::kProtocolVersion);
+    parallel.mutable_group()->set_name("g");
+    parallel.mutable_group()->set_members(2);
+    const auto group = open(parallel);
+    EXPECT_FALSE(out_.members[std::pair(group, Rank())][0].client_welcome().nodes(0).hands_on())
+        << "its processes wait for each other on each node";
 }
 
 TEST_F(TheWall, PlacesWindowsSideBySideOnTopOfEachOther) {
