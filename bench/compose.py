@@ -80,8 +80,8 @@ def main() -> int:
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
     picture = 8 * SIZE[0] * SIZE[1]
-    print(f"{SHEETS} sheets in {SIZE[0]}x{SIZE[1]} pixels, links of {options.rate}; a colour and a depth for each pixel "
-          f"are {picture / 1e6:.2f} MB")
+    print(f"{SHEETS} sheets in {SIZE[0]}x{SIZE[1]} pixels, links of {options.rate}; a colour and a depth for each "
+          f"pixel are {picture / 1e6:.2f} MB")
     figures: dict[int, dict[str, dict[str, float]]] = {}
     with XServer() as x:
         for nodes in options.nodes:

@@ -53,14 +53,13 @@ public:
         const std::lock_guard lock(mutex_);
         std::erase_if(parcels_, [&](const Parcel& parcel) { return parcel.number == number; });
     }
-    /// It has not come to that node: the streams of those that do not get it.
-    Streams not_handed_on(std::uint32_t number, NodeIndex to, Clock::time_point now) {
-        Streams out;
+    /// What was on its way from one node to the next one may not have come there: the streams of those behind.
+    Streams not_handed_on(NodeIndex from, NodeIndex to, Clock::time_point now) {
         const std::lock_guard lock(mutex_);
-        const auto parcel = std::ranges::find(parcels_, number, &Parcel::number);
-        if (parcel == parcels_.end()) return out;
-        add(std::ranges::find(parcel->route, to, &Stop::node), parcel->route.end(), out);
-        parcels_.erase(parcel);
+        Streams out = take_from([&](const std::vector<Stop>& route) {
+            const auto at = std::ranges::find(route, from, &Stop::node);
+            return at != route.end() && at + 1 != route.end() && (at + 1)->node == to ? at + 1 : route.end();
+        });
         if (!out.empty() && now >= again_) {
             again_ = now + pause_;
             pause_ = std::min(2 * pause_, kLongestPause);
@@ -69,16 +68,11 @@ public:
     }
     /// What was on its way through that stream's node may not come to those behind it: their streams.
     Streams lost(const std::shared_ptr<Stream>& stream) {
-        Streams out;
         const std::lock_guard lock(mutex_);
-        std::erase_if(parcels_, [&](const Parcel& parcel) {
-            const auto at =
-                std::ranges::find_if(parcel.route, [&](const Stop& s) { return s.stream.lock() == stream; });
-            if (at == parcel.route.end()) return false;
-            add(at + 1, parcel.route.end(), out);
-            return true;
+        return take_from([&](const std::vector<Stop>& route) {
+            const auto at = std::ranges::find_if(route, [&](const Stop& s) { return s.stream.lock() == stream; });
+            return at == route.end() ? at : at + 1;
         });
-        return out;
     }
 
 private:
@@ -86,13 +80,19 @@ private:
         std::uint32_t number;
         std::vector<Stop> route;
     };
-    using At = typename std::vector<Stop>::const_iterator;
-
-    static void add(At stop, At end, Streams& out) {
-        for (; stop != end; ++stop)
-            if (auto stream = stop->stream.lock();
-                stream && !stream->failed() && std::ranges::find(out, stream) == out.end())
-                out.push_back(std::move(stream));
+    /// Forgets parcels whose routes have something behind `behind(route)`: the streams from there on.
+    template <class Behind>
+    Streams take_from(const Behind& behind) {
+        Streams out;
+        std::erase_if(parcels_, [&](const Parcel& parcel) {
+            const auto first = behind(parcel.route);
+            for (auto stop = first; stop != parcel.route.end(); ++stop)
+                if (auto stream = stop->stream.lock();
+                    stream && !stream->failed() && std::ranges::find(out, stream) == out.end())
+                    out.push_back(std::move(stream));
+            return first != parcel.route.end();
+        });
+        return out;
     }
 
     const bool wanted_;

@@ -179,11 +179,12 @@ void Nodes::hand_on(std::span<Node* const> route, ContextId context, wire::PackB
 
 /// Those that wait for what does not come begin anew, as nodes that come late. The transport's thread.
 NodeStream::OnParcel Nodes::on_parcel(NodeIndex node) const {
-    return [handing_on = handing_on_, node](std::uint32_t number, std::optional<NodeIndex> missed) {
-        if (!missed) return handing_on->handed_on(number);
-        const auto stopped = handing_on->not_handed_on(number, *missed, std::chrono::steady_clock::now());
+    return [handing_on = handing_on_, node](const NodeStream::ParcelNews& news) {
+        if (news.handed_on) handing_on->handed_on(*news.handed_on);
+        if (!news.missed) return;
+        const auto stopped = handing_on->not_handed_on(node, *news.missed, std::chrono::steady_clock::now());
         if (stopped.empty()) return;
-        log(LogLevel::warn, "event=not_handed_on node=%u to=%u", node.value, missed->value);
+        log(LogLevel::warn, "event=not_handed_on node=%u to=%u", node.value, news.missed->value);
         for (const auto& stream : stopped) stream->give_up(kNotHandedOn);
     };
 }

@@ -472,14 +472,11 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
 }
 
 void NodeStream::hear_of_parcel(wire::FrameKind kind, std::span<const std::byte> payload) const {
-    std::uint32_t number = 0;
-    if (!on_parcel_) return;
-    if (kind == wire::FrameKind::not_handed_on) {
-        if (const auto which = wire::read_awaited(payload)) on_parcel_(which->number, which->from);
-    } else if (payload.size() == sizeof number) {
-        std::memcpy(&number, payload.data(), sizeof number);
-        on_parcel_(number, std::nullopt);
-    }
+    std::uint32_t word = 0;
+    if (!on_parcel_ || payload.size() != sizeof word) return;
+    std::memcpy(&word, payload.data(), sizeof word);
+    if (kind == wire::FrameKind::handed_on) on_parcel_({.handed_on = word, .missed = {}});
+    else on_parcel_({.handed_on = {}, .missed = NodeIndex(word)});
 }
 
 bool NodeStream::receipt_is_due() const {

@@ -64,8 +64,12 @@ public:
     void await_parcel(std::uint32_t number, NodeIndex from);
     /// Whether it goes over a link, which it outlives, and not within this machine.
     bool over_link() const { return number_ != 0; }
-    /// Of a parcel: all have got it, or `missed` has not, nor have those behind it. Transport thread.
-    using OnParcel = std::function<void(std::uint32_t number, std::optional<NodeIndex> missed)>;
+    /// What the node says of parcels: one of them has come to all, or a neighbour may not have got what was for it.
+    struct ParcelNews {
+        std::optional<std::uint32_t> handed_on;
+        std::optional<NodeIndex> missed;
+    };
+    using OnParcel = std::function<void(const ParcelNews& news)>;  ///< transport thread
     /// Before it is given to the transport.
     void on_parcel(OnParcel call) { on_parcel_ = std::move(call); }
 

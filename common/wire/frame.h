@@ -59,7 +59,7 @@ enum class FrameKind : std::uint8_t {
     resumed = 22,        ///< frames:u64 as in `receipt`; the stream goes on here
     unreachable = 23,    ///< UTF-8 text, by whoever stands for a node: it cannot be reached now
     begin_again = 24,    ///< empty, by a node that records: what it has is to be told anew from the next frame on
-    not_handed_on = 25,  ///< number:u32 to:u32: that node has not got this parcel
+    not_handed_on = 25,  ///< to:u32: that node may not have got what this one was to hand on
     handed_on = 26,      ///< number:u32, by the last of its route: all have got this parcel
 };
 

@@ -122,9 +122,7 @@ NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig&
       started_us_(microseconds_since_1970()),
       described_(std::move(described)),
       parts_(executor),
-      peer_links_(
-          executor, keys_.tls,
-          [this](SessionId session, std::uint32_t number, NodeIndex to) { not_handed_on(session, number, to); }),
+      peer_links_(executor, keys_.tls, [this](SessionId session, NodeIndex to) { not_handed_on(session, to); }),
       tile_streams_(executor, [this](PictureId stream, Parts parts) {
           parts_.send({PartsOf::Kind::stream, stream}, std::move(parts));
       }) {}
@@ -486,10 +484,10 @@ void NodeServer::lose_parcels(SessionId session, NodeIndex from) {
 }
 
 /// The program, which has a stream to here, sends it anew to those that wait for it.
-void NodeServer::not_handed_on(SessionId session, std::uint32_t number, NodeIndex to) {
+void NodeServer::not_handed_on(SessionId session, NodeIndex to) {
     log::warn("not_handed_on session={} to={}", session.value, to.value);
     if (DataStream* program = program_stream(session))
-        program->send(wire::FrameKind::not_handed_on, words(number, to.value));
+        program->send(wire::FrameKind::not_handed_on, std::as_bytes(std::span(&to.value, 1)));
 }
 
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {

@@ -132,7 +132,7 @@ private:
     void welcome(const proto::NodeWelcome& welcome);
     void admit(const proto::Ticket& ticket);
     void set_peers(const proto::Peers& peers);
-    void not_handed_on(SessionId session, std::uint32_t number, NodeIndex to);
+    void not_handed_on(SessionId session, NodeIndex to);
     void end_session(SessionId session);
     void to_walld(const proto::Envelope& envelope);
     void post(std::function<void()> task);

@@ -34,9 +34,9 @@ constexpr auto kKnownPoll = 10ms;
 /// One message at a time, in order.
 class PeerLinks::Link : public std::enable_shared_from_this<Link> {
 public:
-    /// `lost` hears of the number of each parcel that has not come to the peer.
+    /// `missed` is called when parcels that were sent may not have come to the peer.
     Link(asio::any_io_executor executor, std::shared_ptr<const tls::TlsContext> tls, SessionId session, Peer peer,
-         Brings brings, std::string codec, std::function<void(std::uint32_t)> lost)
+         Brings brings, std::string codec, std::function<void()> missed)
         : timer_(executor),
           room_(executor),
           tls_(std::move(tls)),
@@ -44,13 +44,14 @@ public:
           peer_(std::move(peer)),
           brings_(brings),
           codec_(std::move(codec)),
-          lost_(std::move(lost)) {}
+          missed_(std::move(missed)) {}
 
+    /// `number`: of the parcel; 0: it is none.
     void send(RawBytes message, std::uint32_t number) {
-        if (number != 0 && number == lost_number_) return;  // the rest of one that has not come
-        if (closed_) return lose(number);
+        if (closed_ || (number != 0 && number == missed_number_)) return;  // the rest of one that has not come
+        number_ = number;
         queued_ += message.size();
-        queue_.push_back({std::move(message), number});
+        queue_.push_back(std::move(message));
         if (!std::exchange(running_, true)) asio::co_spawn(timer_.get_executor(), run(), asio::detached);
     }
     std::size_t queued() const { return queued_; }
@@ -64,44 +65,36 @@ public:
     }
     const Peer& peer() const { return peer_; }
     void end_if_stuck() {
-        if (stream_ && stream_->is_open() && stream_->is_stuck()) stream_->close();
+        if (!stream_ || !stream_->is_open() || !stream_->is_stuck()) return;
+        stream_->close();
+        if (!running_) lost("nothing comes back");  // else run() sees it
     }
     void close() {
         closed_ = true;
         timer_.cancel();
         room_.cancel();
         if (stream_) stream_->close();
-        lose(writing_);
-        drop_all();
-        lost_ = nullptr;  // whom it tells may be gone before run() is
+        miss();
+        missed_ = nullptr;  // whom it tells may be gone before run() is
     }
 
 private:
-    struct Message {
-        RawBytes bytes;
-        std::uint32_t number = 0;  ///< of the parcel; 0: it is none
-    };
-
     /// As long as there is something to send.
     asio::awaitable<void> run() {
         const auto self = shared_from_this();
         while (!closed_ && !queue_.empty()) {
             if (!stream_ && !co_await connect()) {
-                drop_all();
+                queue_.clear();
+                queued_ = 0;
                 timer_.expires_after(kTryAgain);
                 co_await timer_.async_wait(net::kTuple);
                 continue;
             }
-            const Message message = std::move(queue_.front());
+            const RawBytes message = std::move(queue_.front());
             queue_.pop_front();
-            queued_ -= message.bytes.size();
+            queued_ -= message.size();
             room_.cancel();
-            writing_ = message.number;
-            if (!co_await write(message)) {
-                lost("closed");
-                lose(message.number);
-            }
-            writing_ = 0;
+            if (!co_await write(message)) lost("closed");
         }
         running_ = false;
     }
@@ -135,9 +128,8 @@ private:
         if (peer_.key) co_return co_await net::Stream::connect_tls(peer_.address, *tls_, *peer_.key);
         co_return co_await net::Stream::connect(peer_.address);
     }
-    asio::awaitable<bool> write(const Message& message) {
+    asio::awaitable<bool> write(std::span<const std::byte> payload) {
         std::vector<std::byte> coded;
-        std::span<const std::byte> payload = message.bytes;
         if (brings_ == Brings::partials && peer_.key) {  // between machines the link is what takes longest
             coded = recode_partial(payload, codec_);
             payload = coded;
@@ -158,13 +150,14 @@ private:
             log::warn("peer_link_lost session={} to={} reason={}", session_.value, log::quoted(peer_.address.text()),
                       log::quoted(why));
         stream_.reset();
+        miss();
     }
-    void drop_all() {
+    /// What was written may be on its way still, or nowhere.
+    void miss() {
+        if (number_ == 0 || std::exchange(missed_number_, number_) == number_) return;
+        queue_.clear();
         queued_ = 0;
-        for (const Message& message : std::exchange(queue_, {})) lose(message.number);
-    }
-    void lose(std::uint32_t number) {
-        if (number != 0 && std::exchange(lost_number_, number) != number && lost_) lost_(number);
+        if (missed_) missed_();
     }
 
     asio::steady_timer timer_, room_;
@@ -173,11 +166,11 @@ private:
     const Peer peer_;
     const Brings brings_;
     const std::string codec_;
-    std::function<void(std::uint32_t)> lost_;
+    std::function<void()> missed_;
     std::optional<net::Stream> stream_;
-    std::deque<Message> queue_;
+    std::deque<RawBytes> queue_;
     std::size_t queued_ = 0;
-    std::uint32_t lost_number_ = 0, writing_ = 0;
+    std::uint32_t number_ = 0, missed_number_ = 0;  // of the last parcel, and of the last of those that were missed
     bool running_ = false, closed_ = false;
 };
 
@@ -211,7 +204,7 @@ std::shared_ptr<PeerLinks::Link> PeerLinks::link(SessionId session, NodeIndex to
     auto& link = links_[{session, to, brings}];
     if (!link)
         link = std::make_shared<Link>(executor_, tls_, session, peer->second, brings, codec_,
-                                      [this, session, to](std::uint32_t number) { tell(session, number, to); });
+                                      [this, session, to] { tell(session, to); });
     return link;
 }
 
@@ -230,7 +223,7 @@ asio::awaitable<void> PeerLinks::hand_on(SessionId session, NodeIndex to, std::u
         way = link(session, to, Brings::parcels);
     }
     if (!way) {
-        if (std::exchange(unknown_[{session, to}], number) != number) tell(session, number, to);
+        if (std::exchange(unknown_[{session, to}], number) != number) tell(session, to);
         co_return;
     }
     bytes_handed_on_ += piece.size();
@@ -242,8 +235,8 @@ void PeerLinks::end_stuck() {
     for (const auto& [key, link] : links_) link->end_if_stuck();
 }
 
-void PeerLinks::tell(SessionId session, std::uint32_t number, NodeIndex to) {
-    if (!closed_) not_handed_on_(session, number, to);
+void PeerLinks::tell(SessionId session, NodeIndex to) {
+    if (!closed_) not_handed_on_(session, to);
 }
 
 void PeerLinks::close() {

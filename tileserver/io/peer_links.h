@@ -42,8 +42,8 @@ public:
     /// Pieces of parcels that may wait for one node; more are not taken from who sends them.
     static constexpr std::size_t kMostPieces = std::size_t{4} << 20;  // bytes
 
-    /// A parcel has not come to that node, whole or in part. Once for each.
-    using NotHandedOn = std::function<void(SessionId session, std::uint32_t number, NodeIndex to)>;
+    /// What was to be handed on to that node may not have come there.
+    using NotHandedOn = std::function<void(SessionId session, NodeIndex to)>;
 
     /// `tls`: the own key, for nodes of other machines; null: they cannot be reached.
     PeerLinks(asio::any_io_executor executor, std::shared_ptr<const tls::TlsContext> tls, NotHandedOn not_handed_on);
@@ -72,7 +72,7 @@ private:
 
     /// Null: the node is not known.
     std::shared_ptr<Link> link(SessionId session, NodeIndex to, Brings brings);
-    void tell(SessionId session, std::uint32_t number, NodeIndex to);
+    void tell(SessionId session, NodeIndex to);
 
     asio::any_io_executor executor_;
     std::shared_ptr<const tls::TlsContext> tls_;

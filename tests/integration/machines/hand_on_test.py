@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Nodes on machines of their own that hand on to each other what all of them need (docs/hand-on.md): what the wall shows
-is the same, also after one of them has gone or cannot reach the next."""
+"""Nodes on machines of their own that hand on to each other what all of them need (docs/hand-on.md): what the wall
+shows is the same, also after one of them has gone or cannot reach the next."""
 import subprocess
 import sys
 import time

@@ -149,14 +149,9 @@ TEST_F(HandOnTest, OnlyNodesThatMayHandOn) {
 }
 
 TEST_F(HandOnTest, ANodeThatWasNotReachedBeginsAnewAndAllGetItFromHere) {
-    const OneBuffer first(kLarge), second(kLarge);
-    bring(first, both);
-    const auto piece = fake(kHead).receive();
-    const std::uint32_t number = wire::read_parcel_piece(piece.payload)->lead.number;
-    std::string words(8, '\0');
-    words[0] = static_cast<char>(number);
-    words[4] = static_cast<char>(kTail.value);
-    fake(kHead).send(FrameKind::not_handed_on, words);
+    const OneBuffer buffer(kLarge);
+    bring(buffer, both);
+    fake(kHead).send(FrameKind::not_handed_on, std::string("\1\0\0\0", 4));
     for (const auto end = Clock::now() + kPatience; nodes[kTail].alive() && Clock::now() < end;)
         std::this_thread::sleep_for(5ms);
     EXPECT_FALSE(nodes[kTail].alive());
@@ -165,8 +160,8 @@ TEST_F(HandOnTest, ANodeThatWasNotReachedBeginsAnewAndAllGetItFromHere) {
 }
 
 TEST_F(HandOnTest, WhatAllHaveGotKeepsNobodyFromGoingOn) {
-    const OneBuffer first(kLarge), second(kLarge);
-    bring(first, both);
+    const OneBuffer buffer(kLarge);
+    bring(buffer, both);
     const std::uint32_t number = wire::read_parcel_piece(fake(kHead).receive().payload)->lead.number;
     fake(kTail).send(FrameKind::handed_on, std::string(1, static_cast<char>(number)) + std::string(3, '\0'));
     std::this_thread::sleep_for(100ms);

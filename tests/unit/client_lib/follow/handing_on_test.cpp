@@ -61,9 +61,9 @@ TEST_F(HandingOnTest, TheLastOneLosesForNobodyElse) {
 
 TEST_F(HandingOnTest, ANodeThatCannotBeReachedIsTriedAgainLaterAndLater) {
     for (auto pause = Handing::kPause; pause < 2 * Handing::kLongestPause; pause *= 2) {
-        const auto number = begin({0, 1, 2});
-        EXPECT_EQ(handing_.not_handed_on(number, NodeIndex(1), now_), of({1, 2}));
-        EXPECT_EQ(handing_.not_handed_on(number, NodeIndex(1), now_), of({})) << "once";
+        begin({0, 1, 2});
+        EXPECT_EQ(handing_.not_handed_on(NodeIndex(0), NodeIndex(1), now_), of({1, 2}));
+        EXPECT_EQ(handing_.not_handed_on(NodeIndex(0), NodeIndex(1), now_), of({})) << "once";
         const auto again = std::min(pause, Handing::kLongestPause);
         EXPECT_FALSE(handing_.open(now_ + again - 1ms));
         now_ += again;
@@ -72,17 +72,25 @@ TEST_F(HandingOnTest, ANodeThatCannotBeReachedIsTriedAgainLaterAndLater) {
 }
 
 TEST_F(HandingOnTest, StreamsThatAreOverAreLeftAlone) {
-    const auto number = begin({0, 1, 2, 3});
+    begin({0, 1, 2, 3});
     streams_[1]->over = true;
     streams_[2].reset();
-    EXPECT_EQ(handing_.not_handed_on(number, NodeIndex(1), now_), of({3}));
-    EXPECT_EQ(handing_.not_handed_on(number + 1, NodeIndex(1), now_), of({})) << "there was none";
+    EXPECT_EQ(handing_.not_handed_on(NodeIndex(0), NodeIndex(1), now_), of({3}));
+}
+
+TEST_F(HandingOnTest, OnlyWhatWentThatWayWasNotHandedOn) {
+    begin({0, 1, 2}), begin({0, 3}), begin({1, 3}), begin({0, 1});
+    EXPECT_EQ(handing_.not_handed_on(NodeIndex(1), NodeIndex(0), now_), of({})) << "nothing goes there";
+    EXPECT_EQ(handing_.not_handed_on(NodeIndex(0), NodeIndex(2), now_), of({})) << "it gets that from another one";
+    EXPECT_TRUE(handing_.open(now_));
+    EXPECT_EQ(handing_.not_handed_on(NodeIndex(0), NodeIndex(1), now_), of({1, 2}));
+    EXPECT_EQ(handing_.lost(streams_[1]), of({3})) << "that went another way";
 }
 
 TEST_F(HandingOnTest, RemembersSoManyParcels) {
-    const auto first = begin({0, 1});
+    begin({0, 1});
     for (std::size_t i = 0; i < Handing::kMostRemembered; ++i) begin({2, 3});
-    EXPECT_EQ(handing_.not_handed_on(first, NodeIndex(1), now_), of({}));
+    EXPECT_EQ(handing_.not_handed_on(NodeIndex(0), NodeIndex(1), now_), of({}));
 }
 
 }  // namespace
