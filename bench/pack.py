@@ -32,12 +32,12 @@ def measure(command: list[str], environment: dict[str, str]) -> dict[str, float]
 
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    arguments.add_argument("--rounds", type=int, default=9)
+    arguments.add_argument("--rounds", type=int, default=5)
     arguments.add_argument("--json", type=Path)
     arguments.add_argument("filter", nargs="?", default=".*")
     options = arguments.parse_args()
     folder = build_folder() / "bench"
-    program = [str(folder / "pack_bench"), "--benchmark_format=json", "--benchmark_min_time=0.1",
+    program = [str(folder / "pack_bench"), "--benchmark_format=json", "--benchmark_min_time=0.5",
                f"--benchmark_filter={options.filter}"]
     best: dict[str, dict[str, float]] = {vendor: {} for vendor in VENDORS}
     with XServer() as x, Wall(tiles=(1, 1), tile_size=(256, 256), name="pack") as wall:

@@ -62,7 +62,10 @@ std::uint64_t HandOn::find_lacking(const Object& object) {
 
 void HandOn::ask(const Object& object) {
     std::erase_if(lacking_, [&](Node* node) {
-        return !may_be_asked(*node) || ObjectSender(nodes_, *node, nodes_.batch(*node, context_)).held(object);
+        if (!may_be_asked(*node)) return true;
+        const bool held = ObjectSender(nodes_, *node, nodes_.batch(*node, context_)).held(object);
+        if (held) node->object_stamps[object.id] = object.latest();
+        return held;
     });
 }
 

@@ -102,8 +102,10 @@ bool Executor::divisible() {
 glapi::Pause Executor::should_pause(std::size_t told) {
     execution_.told += told;
     if (program.trying() || partial.merging()) return glapi::Pause::now;
-    if (!run.list_is_full() && !draw.calling() && !execution_.slice_is_over())
-        return closely_ ? glapi::Pause::closely : glapi::Pause::go_on;
+    // Where a list ends another begins, and by where that is Mesa cuts strips and quads into other triangles: so it is
+    // no matter of time.
+    const bool over = run.compiling() ? run.list_is_full() : draw.calling() || execution_.slice_is_over();
+    if (!over) return closely_ ? glapi::Pause::closely : glapi::Pause::go_on;
     return divisible() ? glapi::Pause::now : glapi::Pause::soon;
 }
 

@@ -13,6 +13,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "common/log/log.h"
 #include "common/log/refusals.h"
@@ -250,6 +251,7 @@ void NodeServer::end_session(SessionId session) {
     admissions_.erase(session);
     shut_out_.forget(session);
     peer_links_.forget(session);
+    peers_told_.erase(session);
     render_->remove_session(session);
     for (const auto& [id, stream] : std::map(streams_))
         if (stream->session() == session) stream->close();
@@ -312,6 +314,7 @@ asio::awaitable<void> NodeServer::keep_link() {
 void NodeServer::drop_link() {
     std::exchange(link_, nullptr)->close();
     parts_.use(nullptr);
+    peers_told_.clear();
     welcomed_ = false;
     tile_streams_.stop_all(*render_);
     render_->set_coordinated(false);
@@ -472,8 +475,10 @@ void NodeServer::set_peers(const proto::Peers& peers) {
     }
     std::set<NodeIndex> there;
     for (const auto& node : peers.nodes()) there.insert(NodeIndex(node.node()));
+    // A walld that has started again hears of nodes one after the other.
+    const auto before = std::exchange(peers_told_[SessionId(peers.session())], there);
     if (DataStream* program = program_stream(SessionId(peers.session())))
-        program->miss_parcels([&](NodeIndex from) { return !there.contains(from); });
+        program->miss_parcels([&](NodeIndex from) { return before.contains(from) && !there.contains(from); });
     render_->set_partial_nodes(SessionId(peers.session()), std::move(there));
     peer_links_.set_peers(SessionId(peers.session()), std::move(nodes));
 }

@@ -174,6 +174,7 @@ private:
     std::chrono::steady_clock::time_point last_stats_ = std::chrono::steady_clock::now();
     PartSender parts_;
     PeerLinks peer_links_;
+    std::map<SessionId, std::set<NodeIndex>> peers_told_;  // by the walld of this link
     TileStreams tile_streams_;
     std::unique_ptr<RenderThread> render_;  // last: it is gone before what it reports to
 };

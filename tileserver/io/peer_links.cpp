@@ -94,7 +94,7 @@ private:
             queue_.pop_front();
             queued_ -= message.size();
             room_.cancel();
-            if (!co_await write(message)) lost("closed");
+            if (!co_await write(message) || !stream_->is_open()) lost("closed");
         }
         running_ = false;
     }
@@ -108,11 +108,26 @@ private:
             lost(stream.error().message);
             co_return false;
         }
-        stream_.emplace(std::move(*stream));
+        stream_ = std::make_shared<net::Stream>(std::move(*stream));
         const auto hello = hello_frame();
         const auto [error, written] = co_await stream_->write(asio::buffer(hello));
         if (error) lost(error.message());
+        else asio::co_spawn(timer_.get_executor(), watch(stream_), asio::detached);
         co_return !error;
+    }
+    /// The peer says nothing, or why it closes the stream. What was written last may be nowhere then.
+    asio::awaitable<void> watch(std::shared_ptr<net::Stream> stream) {
+        const auto self = shared_from_this();
+        std::array<std::byte, 256> room;
+        for (bool open = true; open;) {
+            const auto [error, bytes] = co_await stream->read_some(asio::buffer(room));
+            open = !error;
+        }
+        stream->close();
+        if (stream_ != stream || running_) co_return;  // run() sees it
+        if (!closed_) log::info("peer_link_closed session={} to={}", session_.value, log::quoted(peer_.address.text()));
+        stream_.reset();
+        miss();
     }
     std::vector<std::byte> hello_frame() const {
         proto::DataHello hello;
@@ -139,8 +154,9 @@ private:
              brings_ == Brings::partials ? wire::FrameKind::partial : wire::FrameKind::parcel});
         const std::array<asio::const_buffer, 2> frame{asio::buffer(header),
                                                       asio::buffer(payload.data(), payload.size())};
+        const auto stream = stream_;
         for (const auto& part : frame) {
-            const auto [error, written] = co_await stream_->write(part);
+            const auto [error, written] = co_await stream->write(part);
             if (error) co_return false;
         }
         co_return true;
@@ -167,7 +183,7 @@ private:
     const Brings brings_;
     const std::string codec_;
     std::function<void()> missed_;
-    std::optional<net::Stream> stream_;
+    std::shared_ptr<net::Stream> stream_;  ///< null: there is no connection
     std::deque<RawBytes> queue_;
     std::size_t queued_ = 0;
     std::uint32_t number_ = 0, missed_number_ = 0;  // of the last parcel, and of the last of those that were missed

@@ -742,6 +742,8 @@ TEST_F(ANodeThatHandsOn, HandsOnWhatItGets) {
     ASSERT_TRUE(piece);
     EXPECT_EQ(piece->lead.position, 1u);
     EXPECT_TRUE(std::ranges::equal(piece->content, batch_of(one_frame({1, 0, 0, 1}, 1))));
+    other = Client(UniqueFd());
+    client.expect(wire::FrameKind::not_handed_on);  // nobody knows what it has made of it
 }
 
 TEST_F(ANodeThatHandsOn, TellsTheProgramWhomItCannotReach) {

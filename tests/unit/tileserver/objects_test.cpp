@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <random>
@@ -14,6 +15,7 @@
 #include "common/glstate/vertex_input.h"
 #include "common/wire/batch.h"
 #include "tests/unit/tileserver/test_node.h"
+#include "tileserver/objects/run.h"
 #include "tileserver/objects/texture.h"
 
 namespace wall::tileserver::test {
@@ -404,6 +406,43 @@ TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
     use.block(1, [](auto& p) { pack::RunCall(p, kRun); });
     pack::Uniform(use.buffer(), kProgram, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
     owner->expect_run(use);
+}
+
+/// Mesa cuts strips into other triangles by where a list of its begins.
+TEST_F(ObjectsTest, ARunBecomesTheSameListsHoweverShortItsTurnsAre) {
+    wire::PackBuffer body;
+    for (int i = 0; i < 300; ++i) {
+        const float turn = 0.02f * static_cast<float>(i);
+        pack::Begin(body, i % 2 == 0 ? GL_QUADS : GL_TRIANGLE_STRIP);
+        for (const auto& [x, y] :
+             {std::pair(-0.9f, turn - 1), {-0.8f + turn / 4, -0.9f}, {0.9f, 0.8f}, {-0.3f, 0.9f}}) {
+            pack::Color3f(body, 0.5f + x / 2, 0.5f, 0.5f + y / 9);
+            pack::Vertex2f(body, x, y);
+        }
+        pack::End(body);
+    }
+    static constexpr ClientName kRun(7);
+    const auto drawn = [&](std::uint32_t number, std::uint64_t turn) {
+        const auto session = open(number);
+        Batch definition;
+        pack::RunDefine(definition.buffer(), kRun, static_cast<std::uint32_t>(body.commands()),
+                        static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
+        const auto payload = definition.payload();
+        EXPECT_TRUE(session->executor.start_batch(payload));
+        Slice slice;
+        slice.commands = turn;
+        while (!session->executor.run_slice(slice).value()) {
+        }
+        Batch use;
+        use.block(1, [](auto& p) { pack::RunCall(p, kRun); });
+        session->expect_run(use);
+        return std::pair(session->session.objects.find<tileserver::Run>(kRun)->content()->parts.size(),
+                         session->read(0, {0, 0, kWidth, kHeight}));
+    };
+    const auto at_once = drawn(1, std::numeric_limits<std::uint64_t>::max()), bit_by_bit = drawn(2, 1);
+    EXPECT_EQ(at_once.first, 1u);
+    EXPECT_EQ(bit_by_bit.first, at_once.first);
+    EXPECT_EQ(bit_by_bit.second, at_once.second);
 }
 
 /// An id of another kind is refused, and what is there stays.
