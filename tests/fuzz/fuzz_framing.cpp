@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         reader.commit(bytes);
         at += bytes;
         for (;;) {
-            const auto frame = reader.next();
+            auto frame = reader.next();
             if (!frame) return 0;
             if (!*frame) break;
             auto& payload = (*frame)->payload;

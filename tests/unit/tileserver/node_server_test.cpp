@@ -881,19 +881,14 @@ TEST_P(ABatchLargerThanAFrame, Arrives) {
     EXPECT_EQ((*stream)->has_ring(), GetParam());
     client::Transport transport([] {});
     transport.add(*stream);
-    constexpr std::size_t kNormals = 24 << 20;
     wire::PackBuffer buffer = one_frame({0, 0, 0, 0}, 1), body;
-    for (std::size_t i = 0; i < kNormals; ++i) {
-        if (i % (1 << 20) == 0) walld_->send_pong();  // all together take long on a busy machine
-        pack::Normal3f(body, 0, 0, 1);
-    }
-    pack::Color4f(body, 0, 1, 0, 1);
-    pack::Begin(body, GL_QUADS);
-    for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {1.f, -1.f}, {1.f, 1.f}, {-1.f, 1.f}}) pack::Vertex2f(body, x, y);
-    pack::End(body);
-    ASSERT_GT(body.bytes(), std::size_t{wire::kMaxFramePayload});
-    const glstate::Viewport viewport{0, 0, 64, 48};
-    glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
+    const std::vector<std::byte> content(4 << 20);
+    constexpr ClientName kBuffer(7);
+    pack::BufferData(buffer, kBuffer, static_cast<std::uint32_t>(content.size()), GL_STATIC_DRAW);
+    while (buffer.bytes() <= wire::kMaxFramePayload) pack::BufferSubData(buffer, kBuffer, 0, content);
+    const glstate::Vec4 green{0, 1, 0, 1};
+    glapi::pack_state(buffer, glstate::el::clear_color::id, &green, sizeof green);
+    pack::Clear(body, GL_COLOR_BUFFER_BIT);
     pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
                 static_cast<std::uint32_t>(body.operand_bytes()));
     buffer.append(body, {}, body.mark());
