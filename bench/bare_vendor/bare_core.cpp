@@ -63,28 +63,28 @@ void put_floats(int opcode, Floats... values) {
 }
 
 template <int kOpcode>
-void GLAPIENTRY three_floats(GLfloat x, GLfloat y, GLfloat z) {
+[[gnu::aligned(64)]] void GLAPIENTRY three_floats(GLfloat x, GLfloat y, GLfloat z) {
     put_floats(kOpcode, x, y, z);
 }
 
 template <int kOpcode>
-void GLAPIENTRY three_floats_v(const GLfloat* v) {
+[[gnu::aligned(64)]] void GLAPIENTRY three_floats_v(const GLfloat* v) {
     three_floats<kOpcode>(v[0], v[1], v[2]);
 }
 
-void GLAPIENTRY boxed_vertex(GLfloat x, GLfloat y, GLfloat z) {
+[[gnu::aligned(64)]] void GLAPIENTRY boxed_vertex(GLfloat x, GLfloat y, GLfloat z) {
     const __m128 at = _mm_movelh_ps(_mm_unpacklo_ps(_mm_set_ss(x), _mm_set_ss(y)), _mm_set_ss(z));
     tls_bare.low = _mm_min_ps(tls_bare.low, at);
     tls_bare.high = _mm_max_ps(tls_bare.high, at);
     three_floats<3>(x, y, z);
 }
-void GLAPIENTRY boxed_vertex_v(const GLfloat* v) { boxed_vertex(v[0], v[1], v[2]); }
+[[gnu::aligned(64)]] void GLAPIENTRY boxed_vertex_v(const GLfloat* v) { boxed_vertex(v[0], v[1], v[2]); }
 
-void GLAPIENTRY color4ub(GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
+[[gnu::aligned(64)]] void GLAPIENTRY color4ub(GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
     const std::uint32_t rgba = r | std::uint32_t{g} << 8 | std::uint32_t{b} << 16 | std::uint32_t{a} << 24;
     std::memcpy(put<1>(6), &rgba, sizeof rgba);
 }
-void GLAPIENTRY texcoord2(GLfloat s, GLfloat t) { put_floats(7, s, t); }
+[[gnu::aligned(64)]] void GLAPIENTRY texcoord2(GLfloat s, GLfloat t) { put_floats(7, s, t); }
 void GLAPIENTRY begin(GLenum mode) { std::memcpy(put<1>(1), &mode, sizeof mode); }
 void GLAPIENTRY end() { put<0>(2); }
 const GLubyte* GLAPIENTRY get_string(GLenum name) {
