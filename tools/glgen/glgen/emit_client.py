@@ -89,8 +89,8 @@ def api_header(commands, model, attributes):
                "extern const std::span<const GLenum> kRemovedWords;\n\n")
     hot = _hot(commands)
     out.append("}  // namespace wall::client\n\n"
-               "// Entry points written by hand. Each begins with a line of the processor's cache: they are called millions\n"
-               "// of times a frame, and where they lie by chance is a tenth of their speed.\n"
+               "// Entry points written by hand. Each begins with a line of the processor's cache: they are called "
+               "millions\n// of times a frame, and where they lie by chance is a tenth of their speed.\n"
                "namespace wall::client {\n\n")
     out += [f"[[gnu::aligned(64)]] {i.command.returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration});\n"
             for i in hot]
