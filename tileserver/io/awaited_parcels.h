@@ -39,10 +39,11 @@ public:
         early_bytes_ -= here.mapped().size();
         return std::move(here.mapped());
     }
-    /// Whether there is room for it, where so much waits to be drawn. There always is for the first that is awaited:
-    /// behind it nothing goes on.
-    bool has_room(std::uint32_t number, std::size_t waiting, std::size_t most_waiting) const {
-        if (places_.contains(number)) return number == places_.begin()->first || waiting < most_waiting;
+    /// Whether there is room for it, where so much waits to be drawn. There always is for what comes from the node that
+    /// hands on the first that is awaited: nothing goes on before that, which may come behind this one.
+    bool has_room(std::uint32_t number, NodeIndex from, std::size_t waiting, std::size_t most_waiting) const {
+        if (!places_.empty() && places_.begin()->second == from) return true;
+        if (places_.contains(number)) return waiting < most_waiting;
         return number <= last_ || early_bytes_ < kMostEarly;
     }
     /// It has come. What it is, if it has a place in the stream.

@@ -34,7 +34,8 @@ constexpr auto kTicketLimit = 3s;  // walld's ticket may come later than the cli
 constexpr auto kTicketPoll = 10ms;
 constexpr auto kAhead = 100ms;  // of the bandwidth that a session may have
 constexpr auto kRoomPoll = 5ms;
-constexpr auto kAwaited = 15s;  // for a client whose connection was lost; it tries for less
+constexpr std::size_t kMostUnfinished = 256;  // parcels of one connection
+constexpr auto kAwaited = 15s;                // for a client whose connection was lost; it tries for less
 
 /// The other end has closed the socket, and nothing that it sent before is left.
 bool is_gone(int socket) {
@@ -231,10 +232,25 @@ asio::awaitable<void> DataStream::wait_for_room() {
 
 // ---- parcels ----
 
+/// One whose rest does not come, as who handed it on is gone, makes way in the end.
+Result<std::optional<RawBytes>> DataStream::add_piece(const wire::ParcelPiece& piece) {
+    const auto [place, begun] = unfinished_.try_emplace(piece.lead.number, Parcel{piece.lead.bytes});
+    if (begun) unfinished_bytes_ += piece.lead.bytes;
+    auto whole = place->second.reader.take(piece);
+    const auto forget = [this](auto parcel) {
+        unfinished_bytes_ -= parcel->second.bytes;
+        unfinished_.erase(parcel);
+    };
+    if (!whole || *whole) forget(place);
+    while (unfinished_.size() > 1 && (unfinished_bytes_ > wire::kMostParcel || unfinished_.size() > kMostUnfinished))
+        forget(unfinished_.begin());
+    return whole;
+}
+
 asio::awaitable<Result<std::optional<RawBytes>>> DataStream::take_piece(RawBytes payload) {
     const auto piece = wire::read_parcel_piece(payload);
     if (!piece) co_return tl::unexpected(piece.error());
-    auto whole = parcel_.take(*piece);
+    auto whole = add_piece(*piece);
     if (const auto next = piece->lead.next(); whole && next) {
         const std::uint32_t number = piece->lead.number;
         wire::hand_on_piece(payload);
@@ -265,7 +281,7 @@ asio::awaitable<Result<void>> DataStream::take_parcels() {
         if (!whole || !*whole) continue;
         const auto has_room = [&] {
             const DataStream* to = host_.program_stream(session_);
-            return to == nullptr || to->has_room_for(number);
+            return to == nullptr || to->has_room_for(number, *peer_);
         };
         while (!closing_ && !has_room()) {
             timer_.expires_after(kRoomPoll);

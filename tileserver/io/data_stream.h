@@ -11,6 +11,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -103,8 +104,8 @@ public:
     bool has_commands() const { return batches_ != nullptr && !closing_; }
 
     // ---- parcels that come for it from other nodes ----
-    bool has_room_for(std::uint32_t number) const {
-        return awaited_.has_room(number, batches_->bytes(), BatchQueue::kHighWater);
+    bool has_room_for(std::uint32_t number, NodeIndex from) const {
+        return awaited_.has_room(number, from, batches_->bytes(), BatchQueue::kHighWater);
     }
     void take_parcel(std::uint32_t number, RawBytes batch);
     void note_piece() { awaited_.note(AwaitedParcels::Clock::now()); }
@@ -149,6 +150,7 @@ private:
     asio::awaitable<Result<void>> take_partials();
     /// Of a node that hands parcels on. Ends with the reason.
     asio::awaitable<Result<void>> take_parcels();
+    Result<std::optional<RawBytes>> add_piece(const wire::ParcelPiece& piece);
     /// Hands it on, if somebody follows. The whole parcel with its last piece.
     asio::awaitable<Result<std::optional<RawBytes>>> take_piece(RawBytes payload);
     Result<void> await_parcel(std::span<const std::byte> payload);
@@ -175,8 +177,14 @@ private:
     std::uint64_t forgotten_ = 0;                                  // counted frames before those of sent_
     std::size_t outgoing_bytes_ = 0, sent_bytes_ = 0;
 
-    wire::ParcelReader parcel_;  // that comes over it
-    AwaitedParcels awaited_;     // of its commands
+    // That come over it, by number: what a neighbour hands on comes to it from several others, and so piece by piece.
+    struct Parcel {
+        std::uint32_t bytes = 0;
+        wire::ParcelReader reader{};
+    };
+    std::map<std::uint32_t, Parcel> unfinished_;
+    std::size_t unfinished_bytes_ = 0;
+    AwaitedParcels awaited_;  // of its commands
 
     bool partials_ = false;           // it brings partial pictures, and no commands
     bool parcels_ = false;            // it brings parcels, and no commands

@@ -48,8 +48,8 @@ public:
 
     /// `number`: of the parcel; 0: it is none.
     void send(RawBytes message, std::uint32_t number) {
-        if (closed_ || (number != 0 && number == missed_number_)) return;  // the rest of one that has not come
-        number_ = number;
+        if (closed_ || (number != 0 && number <= missed_number_)) return;  // its beginning may not have come
+        number_ = std::max(number_, number);
         queued_ += message.size();
         queue_.push_back(std::move(message));
         if (!std::exchange(running_, true)) asio::co_spawn(timer_.get_executor(), run(), asio::detached);
@@ -186,7 +186,7 @@ private:
     std::shared_ptr<net::Stream> stream_;  ///< null: there is no connection
     std::deque<RawBytes> queue_;
     std::size_t queued_ = 0;
-    std::uint32_t number_ = 0, missed_number_ = 0;  // of the last parcel, and of the last of those that were missed
+    std::uint32_t number_ = 0, missed_number_ = 0;  // of the latest parcel, and of that when some were missed
     bool running_ = false, closed_ = false;
 };
 

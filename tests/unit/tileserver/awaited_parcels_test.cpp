@@ -18,8 +18,8 @@ protected:
         return awaited_.await(number, NodeIndex(from), now_);
     }
     bool takes(std::uint32_t number) { return awaited_.take(number, bytes(10, 1), now_).has_value(); }
-    bool has_room(std::uint32_t number, std::size_t waiting = 0) const {
-        return awaited_.has_room(number, waiting, kMost);
+    bool has_room(std::uint32_t number, std::size_t waiting = 0, std::uint32_t from = 1) const {
+        return awaited_.has_room(number, NodeIndex(from), waiting, kMost);
     }
 
     static constexpr std::size_t kMost = 1000;
@@ -45,10 +45,11 @@ TEST_F(AwaitedParcelsTest, WhatIsOfAStreamBeforeThisOneIsDropped) {
 }
 
 TEST_F(AwaitedParcelsTest, TheFirstThatIsAwaitedAlwaysHasRoom) {
-    await(1), await(2);
-    EXPECT_TRUE(has_room(1, kMost)) << "behind it nothing goes on";
-    EXPECT_FALSE(has_room(2, kMost));
-    EXPECT_TRUE(has_room(2, kMost - 1));
+    await(1, 5), await(2, 6);
+    EXPECT_TRUE(has_room(1, kMost, 5)) << "behind it nothing goes on";
+    EXPECT_TRUE(has_room(9, kMost, 5)) << "it may come behind this one";
+    EXPECT_FALSE(has_room(2, kMost, 6));
+    EXPECT_TRUE(has_room(2, kMost - 1, 6));
 }
 
 TEST_F(AwaitedParcelsTest, OnlySoMuchMayComeBeforeItsPlace) {

@@ -720,6 +720,31 @@ TEST_F(ANodeThatHandsOn, DrawsNothingBehindAParcelBeforeItHasCome) {
     client.expect(wire::FrameKind::swap_done);
 }
 
+TEST_F(ANodeThatHandsOn, TakesPiecesOfSeveralParcelsInAnyOrder) {
+    stack_session(1);
+    Client client(node_address()), peer(node_address());
+    come(client, 1);
+    awaits(client, 5);
+    awaits(client, 6);
+    come_as_peer(peer);
+    const std::vector route{NodeIndex(kOther), NodeIndex(kSelf)};
+    const auto first = batch_of(one_frame({1, 0, 0, 1}, 1)), second = batch_of(one_frame({0, 1, 0, 1}, 2));
+    send_piece(peer, 6, second, route, 1, 0, 20);
+    send_piece(peer, 5, first, route, 1, 0, 40);
+    send_piece(peer, 6, second, route, 1, 20, second.size());
+    send_piece(peer, 5, first, route, 1, 40, first.size());
+    for (const std::uint32_t number : {6u, 5u}) {
+        const auto said = client.next();
+        ASSERT_TRUE(said && said->kind == wire::FrameKind::handed_on);
+        EXPECT_EQ(words_of(said)[0], number);
+    }
+    for (const std::uint32_t frame : {1u, 2u}) {
+        const auto done = client.next();
+        ASSERT_TRUE(done && done->kind == wire::FrameKind::swap_done);
+        EXPECT_EQ(words_of(done)[1], frame);
+    }
+}
+
 TEST_F(ANodeThatHandsOn, HandsOnWhatItGets) {
     stack_session(1);
     auto listener = std::move(*net::listen_on(*net::Address::parse("unix:" + folder_ + "/other.sock")));
