@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A mesh of many small triangles in immediate mode, one glBegin for all of it or one for each strip: what a
-// simulation's surface looks like to the packer. Any GLX. `mesh --help` tells the options; bench/mesh.py measures it on
-// a wall.
+// simulation's surface looks like to the packer. Or compiled into a display list once. Any GLX. `mesh --help` tells the
+// options; bench/mesh.py measures it on a wall.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +16,7 @@ struct Options {
     int columns = 187, rows = 94;  // 2 * 187 * 94 = 35,156 triangles
     int frames = 60;
     int width = 800, height = 600;
-    bool strips = false;
+    bool strips = false, list = false;
 };
 
 void vertex(const Options& o, int column, int row, float time) {
@@ -51,6 +51,7 @@ bool parse(int argc, char** argv, Options& o) {
     for (int i = 1; i < argc; ++i) {
         const auto is = [&](const char* name) { return std::strcmp(argv[i], name) == 0; };
         if (is("--strips")) o.strips = true;
+        else if (is("--list")) o.list = true;
         else if (is("--frames") && i + 1 < argc) o.frames = std::atoi(argv[++i]);
         else if (is("--size") && i + 1 < argc && std::sscanf(argv[++i], "%dx%d", &o.width, &o.height) == 2) continue;
         else return false;
@@ -64,8 +65,9 @@ int main(int argc, char** argv) {
     Options o;
     if (!parse(argc, argv, o)) {
         std::fputs(
-            "usage: mesh [--strips] [--frames N] [--size WxH]\n"
-            "Draws N frames of a lit mesh of 35,156 triangles (one glBegin, or one strip a row) and prints frames/s.\n",
+            "usage: mesh [--strips] [--list] [--frames N] [--size WxH]\n"
+            "Draws N frames of a lit mesh of 35,156 triangles (one glBegin, or one strip a row) and prints frames/s.\n"
+            "--list: from a display list, always the same.\n",
             stderr);
         return 2;
     }
@@ -78,11 +80,17 @@ int main(int argc, char** argv) {
     glEnable(GL_LIGHTING);
     glEnable(GL_LIGHT0);
     glEnable(GL_NORMALIZE);
+    const auto draw = [&](float time) { o.strips ? draw_strips(o, time) : draw_triangles(o, time); };
+    if (o.list) {
+        glNewList(1, GL_COMPILE);
+        draw(0);
+        glEndList();
+    }
     const auto start = std::chrono::steady_clock::now();
     for (int frame = 0; frame < o.frames; ++frame) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        const float time = 0.05f * static_cast<float>(frame);
-        o.strips ? draw_strips(o, time) : draw_triangles(o, time);
+        if (o.list) glCallList(1);
+        else draw(0.05f * static_cast<float>(frame));
         window.swap();
     }
     glFinish();

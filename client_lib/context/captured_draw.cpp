@@ -52,33 +52,25 @@ public:
     DrawOnNodes(Context& c, const VertexInput& input, const CapturedDraw& draw) : c_(c), input_(input), draw_(draw) {}
 
     void send() {
-        c_.session().draw(
-            c_.draw_source(), Drawn::anywhere(c_.placing().projection), needs_of_geometry(c_.state),
-            [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
-            [&](wire::PackBuffer& buffer) {
-                glapi::pack::DrawCaptured(buffer, input_.id, draw_.capture->id, draw_.mode, draw_.stream,
-                                          draw_.instances);
-            },
-            [&](Node& node) {  // kept commands draw with them, too
-                std::lock_guard lock(c_.share().mutex);
-                for_each_object([&](const Object& object) { node.object_stamps[object.id] = object.latest(); });
-            });
+        c_.session().draw(c_.draw_source(), Drawn::anywhere(c_.placing().projection), needs_of_geometry(c_.state),
+                          *this, [&](wire::PackBuffer& buffer) {
+                              glapi::pack::DrawCaptured(buffer, input_.id, draw_.capture->id, draw_.mode, draw_.stream,
+                                                        draw_.instances);
+                          });
     }
 
-private:
+    // ---- what it names (named_objects.h) ----
+    bool are_on(const Node&) const { return false; }
     template <class Use>
-    void for_each_object(Use&& use) const {
+    void for_each(Use&& use) const {
         for (const auto& buffer : input_.buffers()) use(*buffer);
         use(input_);
         use(*draw_.capture);
     }
-    void bring_objects(Node& node, wire::PackBuffer& buffer) const {
-        std::lock_guard lock(c_.share().mutex);
-        ObjectSender sender(c_.session().nodes(), node, buffer);
-        for_each_object([&](const Object& object) { sender.send(object); });
-        count(node, NodeCounter::object_bytes, sender.bytes());
-    }
+    void note_on(Node&) const {}
+    void note_drawn(Node&) const {}
 
+private:
     Context& c_;
     const VertexInput& input_;
     const CapturedDraw& draw_;

@@ -65,11 +65,22 @@ EncodedRun encoded(const wire::PackBuffer& content) {
             std::move(bytes)};
 }
 
-void define_once(Nodes& nodes, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
-    ObjectSender sender(nodes, node, buffer);
-    sender.send(run);
-    count(node, NodeCounter::object_bytes, sender.bytes());
-}
+/// What a call names (named_objects.h).
+struct CalledRun {
+    const ListRun& run;
+    std::vector<Node*>& reached;
+
+    bool are_on(const Node& node) const {
+        const auto known = node.object_stamps.find(run.id);
+        return known != node.object_stamps.end() && known->second == run.latest();
+    }
+    template <class Use>
+    void for_each(Use&& use) const {
+        use(run);
+    }
+    void note_on(Node&) const {}
+    void note_drawn(Node& node) const { reached.push_back(&node); }
+};
 
 void apply_effects(glstate::State& state, const ListRun& run, const ListRun::Effects& effects) {
     const auto before = state.current;
@@ -117,14 +128,8 @@ void call_run(Context& c, const ListRun& run) {
         const bool somewhere = bounded && c.captures->now == nullptr;
         Drawn drawn = somewhere ? Drawn(placing.projection, run.box) : Drawn::anywhere(placing.projection);
         drawn.elements = elements_of(run);
-        c.session().draw(
-            c.draw_source(), drawn, needs_of_run(c, run),
-            [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session().nodes(), node, buffer, run); },
-            [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
-            [&](Node& node) {
-                node.object_stamps[run.id] = run.latest();  // kept commands call it, too
-                reached.push_back(&node);
-            });
+        c.session().draw(c.draw_source(), drawn, needs_of_run(c, run), CalledRun{run, reached},
+                         [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); });
         follow(c, reached, run);
     });
     apply_effects(c.state, run, run.in_context);

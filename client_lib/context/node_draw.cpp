@@ -73,15 +73,19 @@ public:
     }
     void send();
 
-private:
-    void send_once();
-    /// What a node must hold before it can draw this.
+    // ---- what it names (named_objects.h) ----
+    bool are_on(const Node& node) const { return !cut() && node.brought.has(input_.id, latest_); }
     template <class Use>
-    void for_each_object(Use&& use) const {
+    void for_each(Use&& use) const {
         for (const auto& buffer : input_.buffers()) use(*buffer);
         use(input_);
         if (cut()) use(*known_->pieces);
     }
+    void note_on(Node& node) const { node.brought.note(input_.id, latest_); }
+    void note_drawn(Node&) const {}
+
+private:
+    void send_once();
     static std::uint64_t restart_key(const ArrayDraw& draw) {
         return draw.index_type != 0 && draw.restart ? std::uint64_t{1} << 32 | *draw.restart : 0;
     }
@@ -123,7 +127,6 @@ private:
     bool worth_keeping() { return input_.count_drawn(drawn_elements(), copies(nodes()), nodes()); }
     Needs needs() const;
     std::uint64_t latest_of_input() const;
-    void bring_objects(Node& node, wire::PackBuffer& buffer) const;
     void pack(wire::PackBuffer& buffer) const;
     void pack_special(wire::PackBuffer& buffer) const;
 
@@ -135,7 +138,8 @@ private:
     const bool bounded_;                ///< whether the box around them tells where they are drawn
     DrawnRange range_;
     const RangeBounds* known_ = nullptr;
-    RangeBounds once_;  ///< of indices that are not in a buffer: nobody knows whether they are those of before
+    std::uint64_t latest_ = 0;  ///< InputFacts::latest as it is sent
+    RangeBounds once_;          ///< of indices that are not in a buffer: nobody knows whether they are those of before
 };
 
 /// What places the vertices may be known to the nodes only.
@@ -284,32 +288,14 @@ void NodeDraw::send_once() {
     drawn.elements = static_cast<double>(drawn_elements());
     if (cut() && !c_.state.line_point.line_stipple_enabled)
         drawn.pieces = static_cast<std::uint32_t>(known_->pieces->count());
-    c_.session().draw(
-        c_.draw_source(), drawn, needs(), [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
-        [&](wire::PackBuffer& buffer) { pack(buffer); },
-        [&](Node& node) {  // kept commands draw with them, too
-            const std::uint64_t latest = latest_of_input();
-            if (!cut() && node.brought.has(input_.id, latest)) return;
-            std::lock_guard lock(c_.share().mutex);
-            for_each_object([&](const Object& object) { node.object_stamps[object.id] = object.latest(); });
-            if (node.hollow.empty()) node.brought.note(input_.id, latest);
-        });
+    latest_ = latest_of_input();
+    c_.session().draw(c_.draw_source(), drawn, needs(), *this, [&](wire::PackBuffer& buffer) { pack(buffer); });
 }
 
 std::uint64_t NodeDraw::latest_of_input() const {
     if (input_.settled()) return input_.facts().latest;
     std::lock_guard lock(c_.share().mutex);
     return input_.facts().latest;
-}
-
-void NodeDraw::bring_objects(Node& node, wire::PackBuffer& buffer) const {
-    const std::uint64_t latest = latest_of_input();
-    if (!cut() && node.brought.has(input_.id, latest)) return;
-    std::lock_guard lock(c_.share().mutex);
-    ObjectSender sender(c_.session().nodes(), node, buffer);
-    for_each_object([&](const Object& object) { sender.send(object); });
-    if (node.hollow.empty()) node.brought.note(input_.id, latest);
-    count(node, NodeCounter::object_bytes, sender.bytes());
 }
 
 void NodeDraw::pack(wire::PackBuffer& buffer) const {

@@ -161,6 +161,14 @@ void Dealer::cut(Deal& deal, std::uint64_t mask, double elements, std::uint32_t 
     }
 }
 
+/// Each has one part: they draw in turn.
+const NodeMasks& Dealer::dealt_to() {
+    dealt_to_.clear();
+    for (const Dealt& part : dealt_)
+        if (part.mask != 0) dealt_to_.push_back({part.node->index, part.mask});
+    return dealt_to_;
+}
+
 wire::PackBuffer& Dealer::prepare(Node& node, const DrawSource& source, const Needs& needs) {
     ClientSurface& surface = *source.draw.pictured_surface();
     Deal& deal = surface.deal;

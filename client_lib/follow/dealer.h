@@ -41,6 +41,9 @@ public:
     /// in Drawn. Good until the next call.
     std::span<const Dealt> deal(const DrawSource& source, const Reach& reach, double elements,
                                 std::uint32_t pieces = 0);
+    /// The nodes of what deal() has returned just now, each with the layers that its parts touch. Good until the next
+    /// deal().
+    const NodeMasks& dealt_to();
     /// The node's batch behind everything that drawing this needs there.
     wire::PackBuffer& prepare(Node& node, const DrawSource& source, const Needs& needs);
     /// What was dealt is in the layers of tiles before anything else happens to them. `target` may be anything.
@@ -78,6 +81,7 @@ private:
     MeasuredChoice::Clock::duration waited_before_{};     ///< by the beginning of the while that is measured
     const std::optional<Parallel>& group_;
     std::vector<Dealt> dealt_;       ///< used again and again
+    NodeMasks dealt_to_;             ///< the same
     bool holds_semaphores_ = false;  ///< some node does
 };
 

@@ -9,6 +9,7 @@
 #include "client_lib/follow/dealer.h"
 #include "client_lib/follow/draw_source.h"
 #include "client_lib/follow/hidden_parts.h"
+#include "client_lib/follow/named_objects.h"
 #include "client_lib/follow/node_updater.h"
 #include "client_lib/follow/nodes.h"
 #include "client_lib/follow/object_sender.h"
@@ -58,11 +59,11 @@ inline Reach reach_of(const Followers& followers, const DrawSource& source, cons
     return drawn.mode ? followers.sight.of(*drawn.box, *drawn.mode) : followers.sight.of(*drawn.box);
 }
 
-/// Runs `pack(buffer)` inside a Block on every layer of the draw target that `drawn` touches, after `before(node,
-/// buffer)` outside of the Block; `after(node)` when it is packed.
-template <class Before, class Pack, class After>
+/// Runs `pack(buffer)` inside a Block on every layer of the draw target that `drawn` touches, whose nodes have what it
+/// names (named_objects.h) then.
+template <class Named, class Pack>
 void draw_on(const Followers& followers, const DrawSource& source, const Drawn& drawn, const Needs& needs,
-             Before&& before, Pack&& pack, After&& after) {
+             const Named& named, Pack&& pack) {
     if (!source.draw) return;
     const bool everywhere = options().broadcast || glstate::counts_primitives(source.state) || source.objects.writes();
     if (drawn.seen_by != nullptr) source.draw.note_camera(*drawn.seen_by, drawn.box);
@@ -76,37 +77,38 @@ void draw_on(const Followers& followers, const DrawSource& source, const Drawn& 
     auto& [nodes, updater, hidden, dealer, windows, sight] = followers;
     if (KeptFrame* const kept = hidden.begin_keeping(source, reach.window)) {
         Node& node = nodes[kept->layer];
-        before(node, nodes.batch(node, source.id));
+        bring_named(nodes, node, source, named, nodes.batch(node, source.id));
         pack_block(hidden.prepare(*kept, source, needs), kept->layer.bit());
-        after(kept->follower);
+        note_named(kept->follower, source, named);
+        named.note_drawn(kept->follower);
     }
     using Parts = std::span<const Dealer::Dealt>;
     const Parts dealt = everywhere ? Parts() : dealer.deal(source, reach, drawn.elements, drawn.pieces);
     if (dealt.empty()) dealer.compose(source.draw);
     if (drawn.elements == 0) dealer.compose(source.read);  // it may be a copy
+    const NodeMasks& touched = nodes.touched(source.draw.layers(), reach);
+    updater.prepare_all(dealt.empty() ? touched : dealer.dealt_to(), source, named);
     for (const Dealer::Dealt& part : dealt) {
         if (part.mask == 0 || !part.node->alive()) continue;
         wire::PackBuffer& buffer = dealer.prepare(*part.node, source, needs);
-        before(*part.node, buffer);
+        bring_named(nodes, *part.node, source, named, buffer);
         const std::size_t bytes = buffer.bytes();
         const OpenBlock block = begin_block(buffer, part.mask);
         if (part.behind != 0) glapi::pack::PieceRange(buffer, part.first, part.behind);
         pack(buffer);
         end_block(buffer, block);
         count(*part.node, NodeCounter::geometry_bytes, buffer.bytes() - bytes);
-        after(*part.node);
+        named.note_drawn(*part.node);
     }
-    const NodeMasks& touched = nodes.touched(source.draw.layers(), reach);
-    if (dealt.empty()) updater.prepare_all(touched, source);
     for (const auto& [index, slots] : touched) {
         Node& node = nodes[index];
         if (!source.draw.goes_to(node) || (!dealt.empty() && !node.records())) continue;
         wire::PackBuffer& buffer = updater.prepare(node, source, needs);
-        before(node, buffer);
+        bring_named(nodes, node, source, named, buffer);
         const std::size_t bytes = buffer.bytes();
         pack_block(buffer, slots);
         count(node, NodeCounter::geometry_bytes, buffer.bytes() - bytes);
-        after(node);
+        named.note_drawn(node);
     }
     note_content(source);
 }

@@ -8,17 +8,9 @@
 
 namespace wall::client {
 
-void HandOn::bring(const NodeMasks& to, const DrawSource& source) {
-    if (to.size() < 2) return;
-    able_.clear();
-    for (const auto& [index, slots] : to) {
-        Node& node = nodes_[index];
-        if (nodes_.may_hand_on(node) && source.draw.goes_to(node) && node.mirrors[source.id].used != source.used)
-            able_.push_back(&node);
-    }
-    if (able_.size() < 2 || !nodes_.hand_on()) return;
-    context_ = source.id;
-    source.objects.for_each_used([&](const Object& object) { bring(object); });
+void HandOn::bring_used(const NodeMasks& to, const DrawSource& source) {
+    if (find_able(to, source, [&](Node& node) { return node.mirrors[source.id].used != source.used; }))
+        source.objects.for_each_used([&](const Object& object) { bring(object); });
 }
 
 void HandOn::bring(const Object& object) {

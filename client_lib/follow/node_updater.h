@@ -15,8 +15,13 @@ public:
     /// `nodes` outlives it.
     explicit NodeUpdater(Nodes& nodes) : nodes_(nodes), hand_on_(nodes) {}
 
-    /// Before it is called for each of these: what they lack alike.
-    void prepare_all(const NodeMasks& nodes, const DrawSource& source) { hand_on_.bring(nodes, source); }
+    /// Before the next one is called for each of these: what they lack alike of what drawing with the context needs,
+    /// and of what the draw names.
+    template <class Named = NamesNone>
+    void prepare_all(const NodeMasks& nodes, const DrawSource& source, const Named& named = {}) {
+        hand_on_.bring_used(nodes, source);
+        hand_on_.bring_named(nodes, source, named);
+    }
 
     /// The node's batch after everything that drawing with this context needs: targets, objects, state.
     wire::PackBuffer& prepare(Node& node, const DrawSource& source, const Needs& needs = {});

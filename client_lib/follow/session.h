@@ -64,10 +64,9 @@ public:
     /// Runs `pack(buffer)` inside a Block on every layer of the draw target that `drawn` touches.
     template <class Pack>
     void draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Pack&& pack);
-    /// The same with draw_on()'s `before` and `after`.
-    template <class Before, class Pack, class After>
-    void draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Before&& before, Pack&& pack,
-              After&& after);
+    /// The same of a draw that names objects (named_objects.h).
+    template <class Named, class Pack>
+    void draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, const Named& named, Pack&& pack);
     /// Runs `pack(buffer, node)` outside of blocks on every node, with nothing brought up to date.
     template <class Pack>
     void on_every_node(ContextId context, Pack&& pack);
@@ -166,14 +165,13 @@ private:
 
 template <class Pack>
 void ClientSession::draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Pack&& pack) {
-    draw(
-        source, drawn, needs, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
+    draw(source, drawn, needs, NamesNone(), std::forward<Pack>(pack));
 }
 
-template <class Before, class Pack, class After>
-void ClientSession::draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Before&& before, Pack&& pack,
-                         After&& after) {
-    packing([&] { draw_on(followers_, source, drawn, needs, before, pack, after); });
+template <class Named, class Pack>
+void ClientSession::draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, const Named& named,
+                         Pack&& pack) {
+    packing([&] { draw_on(followers_, source, drawn, needs, named, pack); });
 }
 
 template <class Pack>

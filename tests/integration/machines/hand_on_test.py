@@ -17,6 +17,11 @@ from xserver import XServer  # noqa: E402
 
 FILM = (build_folder() / "bench" / "cinema", "--window", "600x150", "--picture", "640x360", "--frames", "0")
 PICTURE_BYTES = 4 * 640 * 360
+FOREVER = 1_000_000  # frames
+BUFFERS = (build_folder() / "bench" / "buffers", "--size", "600x150", "--frames", FOREVER, "--mesh", "300x100")
+BUFFER_BYTES = 24 * 301 * 101 + 4 * 6 * 300 * 100  # vertices and indices
+LIST = (build_folder() / "bench" / "mesh", "--list", "--size", "600x150", "--frames", FOREVER)
+LIST_BYTES = 24 * 6 * 187 * 94  # normals and positions
 FRAMES = 5
 HEALED = 5.0  # seconds until a frame of all nodes is right again
 
@@ -30,9 +35,10 @@ class HandOn(unittest.TestCase):
         self.wall = self.enterContext(MachineWall((3, 1), (200, 150), swap_timeout_ms=1000,
                                                   environment={"LP_NUM_THREADS": "0"}))
 
-    def start(self, hand_on: bool) -> int:
-        """A film that is held."""
-        app = self.wall.run_at("desk", *FILM, rect=(0, 0, 600, 150), hold=True, stdout=subprocess.DEVNULL,
+    def start(self, hand_on: bool, *, program: tuple = FILM, sort_last: bool = False) -> int:
+        """A program that is held."""
+        app = self.wall.run_at("desk", *map(str, program), rect=(0, 0, 600, 150), hold=True, sort_last=sort_last,
+                               stdout=subprocess.DEVNULL,
                                env=self.x.environment(WALLGL_HAND_ON="1" if hand_on else "0", WALLGL_CODING="0"))
         return self.wall.wait_session(app)
 
@@ -46,10 +52,12 @@ class HandOn(unittest.TestCase):
     def handed_on(self) -> dict[str, int]:
         return {node["name"]: node["bytes_handed_on"] for node in self.wall.nodes()}
 
-    def more_handed_on(self, before: dict[str, int], frames: int) -> bool:
-        """By the first two nodes, whose statistics come once a second."""
-        now = self.handed_on()
-        return all(now[name] - before[name] >= frames * PICTURE_BYTES for name in ("node-0", "node-1"))
+    def wait_for_handed_on(self, before: dict[str, int], size: int) -> None:
+        """By each of the first two nodes, whose statistics come once a second."""
+        def is_handed_on() -> bool:
+            now = self.handed_on()
+            return all(now[name] - before[name] >= size for name in ("node-0", "node-1"))
+        self.wall._until(is_handed_on, "nodes hand on", "node-0", "node-1")
 
     def test_the_wall_shows_the_same(self) -> None:
         before = self.handed_on()
@@ -59,8 +67,27 @@ class HandOn(unittest.TestCase):
         handed = self.step(self.start(True))  # it lies over the other one
         self.assertGreater(to_each.std(), 20, "there is something to be seen")
         self.assertEqual(int((handed != to_each).any(axis=2).sum()), 0)
-        self.wall._until(lambda: self.more_handed_on(before, FRAMES), "nodes hand on", "node-0", "node-1")
+        self.wait_for_handed_on(before, FRAMES * PICTURE_BYTES)
         self.assertEqual(self.handed_on()["node-2"], before["node-2"], "it is the last one")
+
+    def test_meshes_and_lists_too(self) -> None:
+        for what, program, size, sort_last in (("buffers", BUFFERS, BUFFER_BYTES, False),
+                                               ("a list", LIST, LIST_BYTES, False),
+                                               ("parts of a draw", BUFFERS, BUFFER_BYTES, True)):
+            with self.subTest(what):
+                before = self.handed_on()
+                shown = []
+                for hand_on in (False, True):
+                    session = self.start(hand_on, program=program, sort_last=sort_last)
+                    shown.append(self.step(session))
+                    self.wall.ctl("close", session)  # or the next one would find what it has on the nodes
+                    self.wall._until(lambda: not self.wall.sessions(), "the program has ended")
+                self.assertGreater(shown[0].std(), 20, "there is something to be seen")
+                self.assertEqual(int((shown[0] != shown[1]).any(axis=2).sum()), 0)
+                self.wait_for_handed_on(before, size)
+                time.sleep(1.5)
+                for node, handed in self.handed_on().items():
+                    self.assertLess(handed - before[node], 1.2 * size, f"{node} hands it on once")
 
     def heals(self, session: int, expected: numpy.ndarray) -> None:
         """Soon a frame is shown that all nodes have drawn: it is as the columns of what is expected move."""

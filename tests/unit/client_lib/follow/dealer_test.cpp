@@ -56,14 +56,12 @@ protected:
         Drawn drawn(box);
         drawn.elements = elements;
         drawn.pieces = pieces;
-        draw_on(
-            followers, source(), drawn, Needs{}, [](Node&, wire::PackBuffer&) {},
-            [](wire::PackBuffer& buffer) { glapi::pack::Begin(buffer, GL_POINTS); }, [](Node&) {});
+        draw_on(followers, source(), drawn, Needs{}, NamesNone(),
+                [](wire::PackBuffer& buffer) { glapi::pack::Begin(buffer, GL_POINTS); });
     }
     void clear() {
-        draw_on(
-            followers, source(), std::nullopt, Needs{}, [](Node&, wire::PackBuffer&) {},
-            [](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, GL_COLOR_BUFFER_BIT); }, [](Node&) {});
+        draw_on(followers, source(), std::nullopt, Needs{}, NamesNone(),
+                [](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, GL_COLOR_BUFFER_BIT); });
     }
     void swap() {
         dealer.compose(surface);
@@ -178,6 +176,17 @@ TEST_F(ADealer, DividesAFrameAsTheOneBeforeHasCost) {
                                                Op::PartialSend, Op::PartialMerge}));
     EXPECT_EQ(packed(kDraws).ops,
               behind_target({Op::PartialBegin, Op::Block, Op::Begin, Op::Block, Op::Begin, Op::PartialSend}));
+}
+
+TEST_F(ADealer, KnowsWhoGetsPartsOfADraw) {
+    dealer.deal(source(), PixelRect{10, 10, 20, 20}, 1000, 10);
+    const NodeMasks& to = dealer.dealt_to();
+    ASSERT_EQ(to.size(), 2u) << "each gets half of the pieces";
+    EXPECT_EQ(to[0].node, kShows);
+    EXPECT_EQ(to[1].node, kDraws);
+    for (const NodeMask& part : to) EXPECT_EQ(part.slots, kPartialBit | kLeft);
+    dealer.deal(source(), PixelRect{200, 10, 220, 20}, 1000, 10);
+    EXPECT_TRUE(dealer.dealt_to().empty()) << "nobody shows it";
 }
 
 TEST_F(ADealer, LetsNodesComposeThatMay) {

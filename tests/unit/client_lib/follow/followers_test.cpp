@@ -46,9 +46,8 @@ protected:
         return {kContext, state, target, target, used, objects, share};
     }
     void clear(const std::optional<PixelRect>& box = {}) {
-        draw_on(
-            followers, source(), box, Needs{}, [](Node&, wire::PackBuffer&) {},
-            [](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, GL_COLOR_BUFFER_BIT); }, [](Node&) {});
+        draw_on(followers, source(), box, Needs{}, NamesNone(),
+                [](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, GL_COLOR_BUFFER_BIT); });
     }
     void show_left_half() {
         const std::vector<TileInfo> tiles{{kNode, 0, {0, 0, 50, 100}, {}}};

@@ -4,8 +4,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "client_lib/follow/surface.h"
 #include "common/wire/parcel.h"
@@ -35,6 +38,18 @@ struct OneObject final : UsedObjects {
     const Object& object;
 };
 
+/// What a draw names; of the nodes that are known to have it.
+struct OneNamed : NamesNone {
+    OneNamed(const Object& one, std::vector<NodeIndex> known) : object(one), on(std::move(known)) {}
+    bool are_on(const Node& node) const { return std::ranges::find(on, node.index) != on.end(); }
+    template <class Use>
+    void for_each(Use&& use) const {
+        use(object);
+    }
+    const Object& object;
+    std::vector<NodeIndex> on;
+};
+
 /// A window of 100x100 pixels on a tile of each of two nodes, which are reached over links.
 class HandOnTest : public testing::Test {
 protected:
@@ -57,9 +72,12 @@ protected:
     }
     void bring(const Object& object, const NodeMasks& to) {
         OneObject objects(object);
-        const DrawTarget target(surface);
         used.objects = object.latest();
-        hand_on.bring(to, {ContextId(1), state, target, target, used, objects, share});
+        hand_on.bring_used(to, source(objects));
+    }
+    DrawSource source(UsedObjects& objects) {
+        const DrawTarget target(surface);
+        return {ContextId(1), state, target, target, used, objects, share};
     }
     /// Whether it is not told of any frame soon.
     bool is_quiet(NodeIndex node) { return !readable(fakes[node.value].stream.get(), 100ms); }
@@ -136,6 +154,21 @@ TEST_F(HandOnTest, OnlyWhatIsLackedAlikeIsHandedOn) {
     nodes[kHead].object_stamps[buffer.id] = nodes[kTail].object_stamps[buffer.id];
     bring(buffer, both);
     EXPECT_EQ(fake(kHead).receive().kind, FrameKind::parcel);
+}
+
+TEST_F(HandOnTest, WhatADrawNamesTooUnlessTheyAreKnownToHaveIt) {
+    const OneBuffer buffer(kLarge), used_one(1);
+    OneObject objects(used_one);
+    hand_on.bring_named(both, source(objects), OneNamed(buffer, {kTail}));
+    EXPECT_TRUE(is_quiet(kHead) && is_quiet(kTail)) << "one node alone gets it with the draw";
+    const OneNamed named(buffer, {});
+    hand_on.bring_named(both, source(objects), named);
+    EXPECT_EQ(fake(kHead).receive().kind, FrameKind::parcel);
+    EXPECT_EQ(fake(kTail).receive().kind, FrameKind::awaited);
+    for (const NodeIndex node : {kHead, kTail}) {
+        bring_named(nodes, nodes[node], source(objects), named, nodes.batch(nodes[node], ContextId(1)));
+        EXPECT_EQ(nodes[node].batch.bytes(), 0u) << "it has it";
+    }
 }
 
 TEST_F(HandOnTest, OnlyNodesThatMayHandOn) {
