@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 
+#include "client_lib/context/copied_parts.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/gathered_window.h"
 #include "client_lib/objects/share_group.h"
@@ -127,7 +128,12 @@ void BlitFramebuffer(Context& c, GLint from_x0, GLint from_y0, GLint from_x1, GL
         return c.error(error);
     if (mask == 0 || from.empty() || to.empty()) return;
     c.flush_block();
-    if (c.framebuffers->read || can_copy_out_of_window(c)) return blit(c, from, to, mask, filter);
+    if (c.framebuffers->read) {
+        CopyOfParts copy(c, {from.x0, from.y0, from.x1, from.y1}, {to.x0, to.y0, to.x1, to.y1}, mask);
+        blit(c, from, to, mask, filter);
+        return copy.finish();
+    }
+    if (can_copy_out_of_window(c)) return blit(c, from, to, mask, filter);
     // What lies outside of the window is not written; outside of what was gathered of it neither.
     const PixelBox inside = clip_to_window(c, from.box());
     if (inside.empty()) return;

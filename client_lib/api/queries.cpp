@@ -9,6 +9,7 @@
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/captured_draw.h"
 #include "client_lib/context/context.h"
+#include "client_lib/context/copied_parts.h"
 #include "client_lib/context/query_result.h"
 #include "client_lib/context/query_state.h"
 #include "client_lib/objects/share_group.h"
@@ -181,6 +182,7 @@ void BeginQueryIndexed(Context& c, GLenum word, GLuint stream, GLuint name) {
     const auto query = begun_anew(c, name, *target);
     if (!query) return;
     query->stream = stream;
+    if (target->slot == QuerySlot::samples) want_whole_images(c);  // of what all nodes draw alike one counts
     make_current(c, target->slot, stream, query);
     if (target->slot == QuerySlot::time) query->begun = c.session().fence();
 }

@@ -187,7 +187,7 @@ public:
 
     /// Before an object that was drawn with changes or goes: by its id.
     void before_change(ClientName changing_id) {
-        if (session_) session_->hidden_parts([&](HiddenParts& parts) { parts.before_object_changes(changing_id); });
+        if (session_) session_->before_object_changes(changing_id);
     }
 
     /// An object of the nodes that nothing names any more.

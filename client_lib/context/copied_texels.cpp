@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "client_lib/context/copied_parts.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/gathered_window.h"
 #include "client_lib/context/query_state.h"
@@ -109,6 +110,7 @@ bool can_copy_on_nodes(Context& c, const ImageCall& call, const TextureFormat& t
 
 void copy_on_nodes(Context& c, const ImageCall& call, GLint x, GLint y) {
     c.flush_block();
+    want_whole_images(c);
     const CopyTarget target(c, call);
     const PixelRect touched{static_cast<float>(call.x), static_cast<float>(call.y),
                             static_cast<float>(call.x + call.width), static_cast<float>(call.y + call.height)};

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "client_lib/context/ask_one.h"
+#include "client_lib/context/copied_parts.h"
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_view.h"
@@ -33,6 +34,7 @@ std::optional<TexelData> drawn_texels(Context& c, const std::shared_ptr<Texture>
         shape.type = level->type;
         shape.width = level->width, shape.height = level->height, shape.depth = level->depth;
     }
+    want_whole_images(c);
     const GLenum target = glapi::image_target(texture->info, face);
     const auto [format, type] = exact_pixels(shape);
     TexelData texels{format, type, {}};

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "client_lib/context/ask_one.h"
+#include "client_lib/context/copied_parts.h"
 #include "common/glapi/image.h"
 
 namespace wall::client {
@@ -80,6 +81,7 @@ std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum for
         parts.before_reading(target, {box.x, box.y, box.width, box.height});
     });
     if (target.of_objects()) {
+        want_whole_images(c);
         gather_from_one(c, box, format, type, function, pixels);
         return pixels;
     }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "client_lib/follow/image_parts.h"
 #include "client_lib/follow/node.h"
 #include "client_lib/follow/surface.h"
 #include "client_lib/objects/drawn_target.h"
@@ -26,15 +27,18 @@ public:
     /// One layer in place of those (selection, feedback): nothing of the surface changes by what is sent there. `only`
     /// outlives the target.
     DrawTarget(ClientSurface& surface, const TargetLayer& only) : surface_(&surface), only_(&only) {}
-    /// A target of objects, in the layers of all nodes, which outlive it.
+    /// A target of objects, in the layers of all nodes, which outlive it, or in those of its parts.
     DrawTarget(DrawnTarget& objects, const std::vector<TargetLayer>& everywhere)
         : objects_(&objects), everywhere_(&everywhere) {}
 
     explicit operator bool() const { return surface_ != nullptr || objects_ != nullptr; }
     /// All nodes hold the same of it.
     bool alike() const { return objects_ != nullptr || (surface_ != nullptr && only_ == nullptr && surface_->whole); }
-    /// Not a window or pixel buffer: it is made of objects, and all nodes hold the same of it.
+    /// Not a window or pixel buffer: it is made of objects, and all nodes hold the same of it but for what
+    /// DrawnTarget::parts() says.
     bool of_objects() const { return objects_ != nullptr; }
+    /// Null: it is not.
+    DrawnTarget* objects() const { return objects_; }
 
     // ---- any application thread that has it current ----
     /// Of a surface; that of one made of objects is nothing that a window promises.
@@ -56,7 +60,9 @@ public:
     // ---- nodes ----
     std::span<const TargetLayer> layers() const {
         if (only_) return std::span(only_, 1);
-        return objects_ ? *everywhere_ : surface_->layout.layers;
+        if (!objects_) return surface_->layout.layers;
+        const ImageParts* const parts = objects_->parts();
+        return parts ? parts->layers : *everywhere_;
     }
     /// That some of the layers show.
     std::span<const SurfaceView> views() const {

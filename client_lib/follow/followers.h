@@ -8,6 +8,7 @@
 
 #include "client_lib/follow/dealer.h"
 #include "client_lib/follow/draw_source.h"
+#include "client_lib/follow/drawn_parts.h"
 #include "client_lib/follow/hidden_parts.h"
 #include "client_lib/follow/named_objects.h"
 #include "client_lib/follow/node_updater.h"
@@ -27,6 +28,7 @@ struct Followers {
     HiddenParts& hidden;
     Dealer& dealer;
     WindowContents& windows;
+    DrawnParts& drawn;
     Sight& sight;
 };
 
@@ -35,6 +37,7 @@ struct Followers {
 inline void before_drawing(const Followers& followers, const DrawSource& source) {
     const bool writes = source.objects.writes();
     followers.windows.bring(source.draw);
+    followers.drawn.before_drawing(source);
     if (source.draw.of_objects() || writes) followers.hidden.before_drawing_to(source);
     if (writes || source.share->has_drawn.load(std::memory_order_relaxed)) bring_drawn(followers.nodes, source);
 }
@@ -74,7 +77,7 @@ void draw_on(const Followers& followers, const DrawSource& source, const Drawn& 
         pack(buffer);
         end_block(buffer, block);
     };
-    auto& [nodes, updater, hidden, dealer, windows, sight] = followers;
+    auto& [nodes, updater, hidden, dealer, windows, parts, sight] = followers;
     if (KeptFrame* const kept = hidden.begin_keeping(source, reach.window)) {
         Node& node = nodes[kept->layer];
         bring_named(nodes, node, source, named, nodes.batch(node, source.id));

@@ -49,6 +49,7 @@ void Nodes::forget(Node& node) {
 }
 
 void Nodes::forget_content(Node& node) {
+    note_change();
     node.mirrors.clear();
     node.object_stamps.clear();
     node.hollow.clear();
@@ -69,6 +70,7 @@ bool Nodes::begin_recordings_again() {
 }
 
 void Nodes::find_everywhere() {
+    note_change();
     everywhere_.clear();
     for (const auto& node : nodes_)
         if (node->stream) everywhere_.push_back({node->index, 0, kEverything, {}});

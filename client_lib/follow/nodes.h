@@ -45,6 +45,9 @@ public:
 
     /// A layer on each that has a stream, of whatever is drawn alike everywhere.
     const std::vector<TargetLayer>& everywhere() const { return everywhere_; }
+    /// Grows whenever a node comes or goes, or has no more what it had.
+    std::uint64_t changes() const { return changes_; }
+    void note_change() { ++changes_; }
 
     // ---- streams ----
     /// As whose nodes they are spoken to.
@@ -131,6 +134,7 @@ private:
     Transport transport_;
     std::vector<std::unique_ptr<Node>> nodes_;  ///< by index
     std::vector<TargetLayer> everywhere_;
+    std::uint64_t changes_ = 0;
     KeptContents kept_;
     SessionId session_;
     const std::shared_ptr<HandingOn<NodeStream>> handing_on_ =

@@ -19,7 +19,7 @@ constexpr int kQuestionLimitMs = 1500;  // the node may be waiting for another p
 bool ask_drawn(Nodes& nodes, Node& holder, const Object& object, wire::PackBuffer& out,
                const std::function<void()>& packed) {
     bool answered = true;
-    const auto ask = [&](const auto& pack) -> std::optional<std::vector<std::byte>> {
+    const auto ask = [&](const auto& pack, const ImageRows&) -> std::optional<std::vector<std::byte>> {
         if (!answered) return std::nullopt;
         auto answer = nodes.ask_now(holder, "drawn content", kDrawnLimitMs, pack);
         answered = answer.has_value();
@@ -41,7 +41,8 @@ bool keep_drawn(Nodes& nodes, Node& holder, const Object& object) {
 }
 
 /// What is drawn now the node does not draw.
-void lose_images(Node& node, const DrawSource& source) {
+void lose_images(Nodes& nodes, Node& node, const DrawSource& source) {
+    nodes.note_change();
     std::lock_guard lock(source.share->mutex);
     const auto lose = [&](const Object& image) {
         if (const auto known = node.object_stamps.find(image.id); known != node.object_stamps.end()) known->second = 0;
@@ -133,7 +134,7 @@ void bring_drawn(Nodes& nodes, const DrawSource& source) {
         Node& node = nodes[layer];
         if (!node.alive()) continue;
         if (!source.draw.goes_to(node)) {
-            if (source.draw.of_objects() || source.objects.writes()) lose_images(node, source);
+            if (source.draw.of_objects() || source.objects.writes()) lose_images(nodes, node, source);
             continue;
         }
         if (node.mirrors[source.id].used == source.used) continue;

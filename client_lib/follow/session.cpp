@@ -143,6 +143,7 @@ void ClientSession::take_events() {
 /// For another one, which has taken the program.
 void ClientSession::leave_wall() {
     moving_ = false;
+    drawn_.end_all();
     keep_drawn(nodes_);
     for (const auto& [id, surface] : open_surfaces_) windows_.keep(*surface);
     if (control_->go()) return take_events();
@@ -279,6 +280,13 @@ void ClientSession::before_clear(const DrawSource& source, std::uint32_t mask, b
     packing([&] {
         hidden_.before_clear(source, mask);
         if (wipes) windows_.before_wiping(source.draw);
+    });
+}
+
+void ClientSession::before_object_changes(ClientName object) {
+    packing([&] {
+        hidden_.before_object_changes(object);
+        drawn_.before_object_changes(object);
     });
 }
 

@@ -81,6 +81,14 @@ public:
         packing([&] { use(hidden_); });
     }
 
+    /// The same with `use(DrawnParts&)`.
+    template <class Use>
+    void drawn_parts(Use&& use) {
+        packing([&] { use(drawn_); });
+    }
+    /// Before an object that was drawn with, or to, changes or goes.
+    void before_object_changes(ClientName object);
+
     // ---- questions; the context's block has been sent before ----
     /// Packs a command that wants an answer, `pack(buffer, request)`, behind everything that drawing with the context
     /// needs, sends it and waits. Nothing if the node is lost. `function`: for the count of round trips.
@@ -156,10 +164,11 @@ private:
     HiddenParts hidden_{nodes_, open_surfaces_};
     Dealer dealer_{nodes_, updater_, options().sort_last};
     WindowContents windows_{nodes_, dealer_};
+    DrawnParts drawn_{nodes_, open_surfaces_};
     Surfaces surfaces_{*control_, nodes_, hidden_, open_surfaces_};
     Snapping snapping_{nodes_, options().lossy_pixels};
     Sight sight_;
-    const Followers followers_{nodes_, updater_, hidden_, dealer_, windows_, sight_};
+    const Followers followers_{nodes_, updater_, hidden_, dealer_, windows_, drawn_, sight_};
     const std::unique_ptr<SortScratch> sort_scratch_;
 };
 

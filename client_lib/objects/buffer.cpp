@@ -94,10 +94,12 @@ void Buffer::take_drawn(std::span<const std::byte> content) {
 void Buffer::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
     for (std::size_t at = 0; at < size(); at += kLargestBufferCommand) {
         const std::size_t bytes = std::min(kLargestBufferCommand, size() - at);
-        const auto answer = ask([&](wire::PackBuffer& question, RequestId request) {
-            glapi::pack::BufferRead(question, request, id, static_cast<std::uint32_t>(at),
-                                    static_cast<std::uint32_t>(bytes));
-        });
+        const auto answer = ask(
+            [&](wire::PackBuffer& question, RequestId request) {
+                glapi::pack::BufferRead(question, request, id, static_cast<std::uint32_t>(at),
+                                        static_cast<std::uint32_t>(bytes));
+            },
+            {});
         if (!answer || answer->size() != bytes) return;
         glapi::pack::BufferSubData(buffer, id, static_cast<std::uint32_t>(at), *answer);
         packed();

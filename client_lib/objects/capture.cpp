@@ -37,7 +37,7 @@ void Capture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const 
 
 void Capture::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>&) const {
     const auto counts =
-        ask([&](wire::PackBuffer& batch, RequestId request) { glapi::pack::CaptureCounts(batch, request, id); });
+        ask([&](wire::PackBuffer& batch, RequestId request) { glapi::pack::CaptureCounts(batch, request, id); }, {});
     const std::array<std::uint64_t, kVertexStreams> nothing{};
     if (counts && counts->size() == sizeof nothing) glapi::pack::CaptureCounted(buffer, id, *counts);
     else glapi::pack::CaptureCounted(buffer, id, std::as_bytes(std::span(nothing)));

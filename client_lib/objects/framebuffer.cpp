@@ -164,6 +164,18 @@ void Framebuffer::for_each_image(const std::function<void(const Object&)>& use) 
         if (attachment.present()) use_with_base(*attachment.object(), use);
 }
 
+bool Framebuffer::has_plain_images() const {
+    return std::ranges::all_of(attachments_, [](const Attachment& attachment) {
+        if (!attachment.texture) return true;
+        const Texture& texture = *attachment.texture;
+        const GLenum target = texture.info.target;
+        const bool flat =
+            target == GL_TEXTURE_2D || target == GL_TEXTURE_RECTANGLE || target == GL_TEXTURE_2D_MULTISAMPLE;
+        const auto defined = std::ranges::count_if(texture.faces[0], &TextureLevel::defined);
+        return flat && !texture.view.origin && attachment.level == 0 && defined == 1;
+    });
+}
+
 void Framebuffer::note_drawn() {
     for (const Attachment& attachment : attachments_) {
         if (attachment.renderbuffer) attachment.renderbuffer->note_drawn();

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "client_lib/objects/copied_out.h"
 #include "client_lib/objects/drawn_target.h"
 #include "client_lib/objects/renderbuffer.h"
 #include "client_lib/objects/texture.h"
@@ -78,6 +79,12 @@ public:
     std::uint32_t height() const override { return size(&ImageShape::height).value_or(defaults_.height); }
     void for_each_image(const std::function<void(const Object&)>& use) const override;
     void note_drawn() override;
+    std::uint64_t defined() const override { return stamp_; }
+    /// Whether each of its images is one of its own: no level, layer or view of a larger one. The share group's mutex
+    /// is held.
+    bool has_plain_images() const;
+
+    CopiedOut copied;  ///< out of it
 
 private:
     std::optional<std::uint32_t> size(std::uint32_t ImageShape::*side) const;

@@ -28,6 +28,11 @@ ClientName next_object_id();
 /// Bytes of content from which on a round trip is worth while: on a network of 1 Gbit/s they take 2 ms.
 inline constexpr std::size_t kLeastShared = std::size_t{256} << 10;
 
+/// What is asked for of drawn content: tight rows of an image; none of what is no image.
+struct ImageRows {
+    std::int32_t first = 0, count = 0, width = 0;
+};
+
 class Object {
 public:
     explicit Object(ClientName own_id, GLuint own_name = 0) : id(own_id), name(own_name) {}
@@ -57,7 +62,7 @@ public:
     virtual bool is_drawn() const { return false; }
     /// Asks a node that has it, `pack(buffer, request)` being the question; nothing: it does not answer.
     using AskHolder = std::function<std::optional<std::vector<std::byte>>(
-        const std::function<void(wire::PackBuffer& buffer, RequestId request)>& pack)>;
+        const std::function<void(wire::PackBuffer& buffer, RequestId request)>& pack, const ImageRows& rows)>;
     /// Behind pack_changes() for a node that had nothing: packs it as another node has it.
     virtual void pack_drawn(const AskHolder& /*ask*/, wire::PackBuffer& /*buffer*/,
                             const std::function<void()>& /*packed*/) const {}

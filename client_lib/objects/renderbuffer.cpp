@@ -26,9 +26,11 @@ void Renderbuffer::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer,
     const auto [layout, type] = exact_pixels(*format, stored_bits(*format, GL_RGBA, GL_UNSIGNED_BYTE));
     for_each_rows(static_cast<std::int32_t>(width_), static_cast<std::int32_t>(height_),
                   [&](std::int32_t first, std::int32_t rows) {
-                      const auto pixels = ask([&](wire::PackBuffer& question, RequestId request) {
-                          glapi::pack::RenderbufferRead(question, request, id, first, rows, layout, type);
-                      });
+                      const auto pixels = ask(
+                          [&](wire::PackBuffer& question, RequestId request) {
+                              glapi::pack::RenderbufferRead(question, request, id, first, rows, layout, type);
+                          },
+                          {first, rows, static_cast<std::int32_t>(width_)});
                       if (!pixels || pixels->empty()) return;
                       glapi::pack::RenderbufferWrite(buffer, id, first, rows, layout, type, *pixels);
                       packed();

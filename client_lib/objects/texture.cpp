@@ -439,9 +439,11 @@ void Texture::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const s
             const GLenum target = glapi::image_target(info, face);
             const auto [format, type] = exact_pixels(level);
             for_each_part(level, [&](std::int32_t slice, std::int32_t first, std::int32_t rows) {
-                const auto pixels = ask([&](wire::PackBuffer& question, RequestId request) {
-                    glapi::pack::TexRead(question, request, id, target, number, slice, first, rows, format, type);
-                });
+                const auto pixels = ask(
+                    [&](wire::PackBuffer& question, RequestId request) {
+                        glapi::pack::TexRead(question, request, id, target, number, slice, first, rows, format, type);
+                    },
+                    {first, rows, level.width});
                 if (!pixels || pixels->empty()) return;
                 glapi::pack::TexSubImage(buffer, id, target, number, 0, first, slice, level.width, rows, 1, format,
                                          type, *pixels);

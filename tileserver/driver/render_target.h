@@ -18,6 +18,7 @@ struct LayerGeometry {
     geom::Rect area;     ///< canvas pixels that the layer holds
     std::uint32_t window_width = 0, window_height = 0;
     std::optional<geom::EyeView> view;  ///< that the layer has of what is drawn by a camera; none: the camera's own
+    std::optional<geom::Rect> part;     ///< only these pixels of it change, y up; none: all
     bool operator==(const LayerGeometry&) const = default;
 
     bool scaled() const {

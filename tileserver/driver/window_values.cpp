@@ -66,6 +66,17 @@ WindowValues::IntBox scissor_of(const LayerGeometry& g, const glstate::Scissor& 
     return layer_box(g, {scissor.x, scissor.y, scissor.width, scissor.height});
 }
 
+/// Scissors that leave everything else as it is.
+void keep_to(const geom::Rect& part, WindowValues& values) {
+    for (unsigned i = 0; i < WindowValues::kViewports; ++i) {
+        WindowValues::IntBox& box = values.scissors[i];
+        const bool enabled = (values.scissor_enabled >> i & 1) != 0;
+        const geom::Rect both = enabled ? geom::intersect(part, {box.x, box.y, box.width, box.height}) : part;
+        box = {both.x, both.y, both.width, both.height};
+    }
+    values.scissor_enabled = (1u << WindowValues::kViewports) - 1;
+}
+
 }  // namespace
 
 WindowValues window_values(const LayerGeometry& g, const glstate::State& state) {
@@ -79,6 +90,7 @@ WindowValues window_values(const LayerGeometry& g, const glstate::State& state) 
             if (const auto* own = own_value<el::scissor_rest>(state, i)) out.scissors[i] = scissor_of(g, *own);
         }
     out.scissor_enabled = el::scissor_enabled::ref(state);
+    if (g.part) keep_to(*g.part, out);
     out.stipple = rotate_stipple(el::polygon_stipple::ref(state), g.offset_x(), g.offset_y());
     const auto& zoom = el::pixel_zoom::ref(state);
     out.pixel_zoom = {static_cast<float>(zoom.x * g.scale_x()), static_cast<float>(zoom.y * g.scale_y())};

@@ -20,4 +20,19 @@ void FramebufferCommands::BindTargets(ClientName draw, ClientName read, std::uin
     execution_.targets_known = false;
 }
 
+void FramebufferCommands::TargetPart(ClientName name, std::int32_t x, std::int32_t y, std::uint32_t width,
+                                     std::uint32_t height) {
+    constexpr std::uint32_t kMost = 1u << 24;  // pixels
+    if (width > kMost || height > kMost) return execution_.refuse("a part larger than any image");
+    draw_part(name, geom::Rect{x, y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)});
+}
+
+void FramebufferCommands::TargetWhole(ClientName name) { draw_part(name, std::nullopt); }
+
+/// One that is not there, or no more, has no pixels.
+void FramebufferCommands::draw_part(ClientName name, const std::optional<geom::Rect>& part) {
+    if (const auto framebuffer = execution_.session.objects.find<tileserver::Framebuffer>(name))
+        framebuffer->draw_part(part);
+}
+
 }  // namespace wall::tileserver

@@ -26,6 +26,12 @@ void Framebuffer::define(const glstate::FramebufferDefinition& definition) {
     defined_ = true;
 }
 
+void Framebuffer::draw_part(const std::optional<geom::Rect>& part) {
+    part_ = part;
+    geometry_.part = part;
+    driver_.forget_target();
+}
+
 Result<void> Framebuffer::update(const ObjectTable& objects, SharedContents& shared) {
     if (!defined_ && textures_ == objects.version(ObjectKind::texture) &&
         renderbuffers_ == objects.version(ObjectKind::renderbuffer))
@@ -129,6 +135,7 @@ void Framebuffer::find_size() {
         size = {static_cast<GLint>(definition_.defaults.width), static_cast<GLint>(definition_.defaults.height)};
     const bool any = size[0] != std::numeric_limits<GLint>::max();
     geometry_ = any ? plain_geometry(size[0], size[1]) : LayerGeometry{};
+    geometry_.part = part_;
     complete_ = complete_ && any && size[0] > 0 && size[1] > 0;
     driver_.drain_errors();
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/base/result.h"
@@ -24,6 +25,8 @@ public:
     /// with others any more. An error: an attachment is of another kind than its definition says, or copies take more
     /// memory than a session may have.
     Result<void> update(const ObjectTable& objects, SharedContents& shared);
+    /// From now on only these pixels of its images change, y up; none: all.
+    void draw_part(const std::optional<geom::Rect>& part);
 
     void bind(GLenum draw_buffer, GLenum read_buffer) override;
     bool draws_colors() const override;
@@ -39,6 +42,7 @@ private:
     Driver& driver_;
     const Gl& gl_;
     glstate::FramebufferDefinition definition_;
+    std::optional<geom::Rect> part_;
     bool has_depth_ = false;
     bool defined_ = false;                            // anew, since update()
     std::uint64_t textures_ = 0, renderbuffers_ = 0;  // versions of the table as of update()

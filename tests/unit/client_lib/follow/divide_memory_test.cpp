@@ -96,7 +96,8 @@ private:
     Sight sight_;
     Dealer dealer_{nodes_, updater_, false};
     WindowContents windows_{nodes_, dealer_};
-    Followers followers_{nodes_, updater_, hidden_, dealer_, windows_, sight_};
+    DrawnParts drawn_{nodes_, open_};
+    Followers followers_{nodes_, updater_, hidden_, dealer_, windows_, drawn_, sight_};
     ClientSurface surface_{SurfaceId(1), {}};
     glstate::State state_;
     glstate::Projection projection_;

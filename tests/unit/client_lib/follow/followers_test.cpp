@@ -84,7 +84,8 @@ protected:
     Dealer dealer{nodes, updater, false};
     Sight sight;
     WindowContents windows{nodes, dealer};
-    Followers followers{nodes, updater, hidden, dealer, windows, sight};
+    DrawnParts drawn{nodes, open};
+    Followers followers{nodes, updater, hidden, dealer, windows, drawn, sight};
     ClientSurface surface{SurfaceId(1), {}};
     glstate::State state;
     UseStamp used;
