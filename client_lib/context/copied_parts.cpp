@@ -12,7 +12,10 @@ namespace wall::client {
 
 CopyOfParts::CopyOfParts(Context& c, const Corners& from, const Corners& to, GLbitfield mask)
     : c_(c), read_(c.framebuffers->read), draw_(c.framebuffers->draw) {
-    if (!c_.draw_target() || c_.draws_nothing || read_ == draw_) return want_whole_images(c_);
+    if (!c_.draw_target() || c_.draws_nothing || read_ == draw_) {
+        want_whole_images(c_);
+        return;
+    }
     const bool as_it_is = from.x0 < from.x1 && from.y0 < from.y1 && to.x1 - to.x0 == from.x1 - from.x0 &&
                           to.y1 - to.y0 == from.y1 - from.y0;
     moved_ = {draw_ ? draw_->id.value : c_.read_surface()->id.value, to.x0 - from.x0, to.y0 - from.y0};

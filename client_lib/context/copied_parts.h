@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "client_lib/context/context.h"
-#include "client_lib/objects/copied_out.h"
+#include "client_lib/objects/framebuffer.h"
 
 namespace wall::client {
 

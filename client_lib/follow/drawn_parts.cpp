@@ -68,7 +68,9 @@ void put_part(const PixelRect& part, const ImageRows& rows, std::span<const std:
 /// A window that may show more than its own tiles have now, or otherwise than it is, is left alone.
 std::shared_ptr<ImageParts> DrawnParts::parts_in(const ClientSurface& window, std::int32_t x, std::int32_t y) const {
     const SurfaceLayout& layout = window.layout;
-    if (window.whole || layout.offscreen || !layout.views.empty() || options().broadcast || parallel()) return nullptr;
+    if (window.whole || layout.offscreen || !layout.views.empty() || options().broadcast || !options().drawn_parts ||
+        parallel())
+        return nullptr;
     auto parts = std::make_shared<ImageParts>();
     parts->window = window.id;
     parts->layout = layout.version;

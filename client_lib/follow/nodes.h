@@ -126,7 +126,7 @@ private:
     void lose(Node& node);
     NodeStream::OnParcel on_parcel(NodeIndex node) const;
     void forget(Node& node);
-    static void forget_content(Node& node);
+    void forget_content(Node& node);
     void find_everywhere();
 
     const std::optional<Parallel>& group_ = parallel();

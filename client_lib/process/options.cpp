@@ -44,6 +44,7 @@ const Options& options() {
                                                 coding(),
                                                 is("WALLGL_SORT_LAST", "1"),
                                                 lossy_pixels(),
+                                                !is("WALLGL_DRAWN_PARTS", "0"),
                                                 !is("WALLGL_HAND_ON", "0"),
                                                 cameras()};
     return *read;

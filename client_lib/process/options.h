@@ -21,7 +21,8 @@ struct Options {
     bool sort_last = false;  ///< WALLGL_SORT_LAST=1: geometry may be dealt to nodes (docs/sort-last.md)
     /// WALLGL_LOSSY_PIXELS: how far vertices may lie from where they belong; none: as the wall has it
     std::optional<float> lossy_pixels = {};
-    bool hand_on = true;  ///< WALLGL_HAND_ON=0: every node gets all that it needs from us (docs/hand-on.md)
+    bool drawn_parts = true;  ///< WALLGL_DRAWN_PARTS=0: every node draws all of what is drawn off the window
+    bool hand_on = true;      ///< WALLGL_HAND_ON=0: every node gets all that it needs from us (docs/hand-on.md)
     std::vector<std::string> cameras = {};  ///< WALLGL_CAMERA: uniforms that may be a program's camera
 };
 

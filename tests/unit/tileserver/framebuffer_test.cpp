@@ -131,6 +131,33 @@ TEST_F(FramebufferTest, ClipSpaceMayEndAtTheWindowsUpperEdge) {
     EXPECT_EQ(at(3, 3), kGreen);
 }
 
+TEST_F(FramebufferTest, OnlyThePartThatIsNeededIsDrawn) {
+    draw_texture();
+    Batch batch;
+    pack::TargetPart(batch.buffer(), kFramebuffer, 8, 8, 16, 16);
+    clear(batch, {0, 1, 0, 1});
+    session_->expect_run(batch);
+    EXPECT_EQ(at(7, 8), kRed);
+    EXPECT_EQ(at(8, 8), kGreen);
+    EXPECT_EQ(at(23, 23), kGreen);
+    EXPECT_EQ(at(24, 23), kRed);
+    Batch scissored;
+    scissored.set<el::scissor>({0, 0, 12, kSize}).set<el::scissor_enabled>(1);
+    clear(scissored, {1, 0, 0, 1});
+    scissored.set<el::scissor_enabled>(0);
+    pack::TargetWhole(scissored.buffer(), kFramebuffer);
+    session_->expect_run(scissored);
+    EXPECT_EQ(at(11, 8), kRed);
+    EXPECT_EQ(at(12, 8), kGreen) << "beyond the scissor";
+    Batch whole;
+    clear(whole, {0, 1, 0, 1});
+    pack::TargetPart(whole.buffer(), kOther, 0, 0, 1, 1);  // which is not there
+    session_->expect_run(whole);
+    EXPECT_EQ(at(0, 0), kGreen);
+    EXPECT_THAT(refusal([](wire::PackBuffer& b) { pack::TargetPart(b, kFramebuffer, 0, 0, ~0u, 1); }),
+                HasSubstr("larger than any image"));
+}
+
 TEST_F(FramebufferTest, TheWindowIsLeftAlone) {
     Batch window;
     clear(window, {0, 1, 0, 1});

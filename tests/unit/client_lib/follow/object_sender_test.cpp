@@ -28,9 +28,11 @@ struct DrawnObject final : Object {
     }
     bool is_drawn() const override { return true; }
     void pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>&) const override {
-        const auto answer = ask([&](wire::PackBuffer& question, RequestId request) {
-            glapi::pack::BufferRead(question, request, id, 0, static_cast<std::uint32_t>(kContent.size()));
-        });
+        const auto answer = ask(
+            [&](wire::PackBuffer& question, RequestId request) {
+                glapi::pack::BufferRead(question, request, id, 0, static_cast<std::uint32_t>(kContent.size()));
+            },
+            {});
         if (answer) glapi::pack::BufferSubData(buffer, id, 0, *answer);
     }
 };

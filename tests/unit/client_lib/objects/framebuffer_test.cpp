@@ -156,7 +156,9 @@ TEST_F(DrawnImage, GoesFromNodeToNode) {
     EXPECT_EQ(sent(0), std::vector<std::string>{"TexImage"});
     wire::PackBuffer buffer;
     unsigned asked = 0;
-    const auto ask = [&](const auto& pack) -> std::optional<std::vector<std::byte>> {
+    const auto ask = [&](const auto& pack, const ImageRows& rows) -> std::optional<std::vector<std::byte>> {
+        EXPECT_EQ(rows.count, 8);
+        EXPECT_EQ(rows.width, 8);
         wire::PackBuffer question;
         pack(question, RequestId(1));
         EXPECT_EQ(commands(question), std::vector<std::string>{"TexRead"});
@@ -171,7 +173,7 @@ TEST_F(DrawnImage, GoesFromNodeToNode) {
 TEST_F(DrawnImage, OfANodeThatDoesNotAnswerIsLeftOut) {
     f.note_drawn();
     wire::PackBuffer buffer;
-    image->pack_drawn([](const auto&) { return std::nullopt; }, buffer, no_limit);
+    image->pack_drawn([](const auto&, const ImageRows&) { return std::nullopt; }, buffer, no_limit);
     EXPECT_EQ(buffer.commands(), 0u);
 }
 
