@@ -3,8 +3,8 @@
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
 #                                         order, switch, pack, mesh, buffers, late_node, notice, gpus, views, march,
-#                                         sort_last, compose, off_wall, hand_on, recordings, scaling, traffic, share,
-#                                         transport, coding, fair, streams, codec, simulate)
+#                                         sort_last, compose, off_wall, off_window, hand_on, recordings, scaling,
+#                                         traffic, share, transport, coding, fair, streams, codec, simulate)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -49,6 +49,7 @@ run sort_last bench/sort_last.py --json "$results/sort_last.json"
 run march bench/march.py --json "$results/march.json"
 run compose bench/compose.py --json "$results/compose.json"
 run off_wall bench/off_wall.py --json "$results/off_wall.json"
+run off_window bench/off_window.py --json "$results/off_window.json"
 run hand_on bench/hand_on.py --json "$results/hand_on.json"
 run recordings bench/recordings.py --json "$results/recordings.json"
 run scaling bench/scaling.py --json "$results/scaling.json"

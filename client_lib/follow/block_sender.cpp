@@ -55,7 +55,7 @@ void BlockSender::run() {
     followers_.dealer.compose(source_.draw);
     followers_.updater.prepare_all(nodes, source_);
     const bool single = packer_.primitives().size() == 1 && !may_be_divided(packer_.primitives()[0]);
-    const bool whole = packer_.has_rare() || everywhere || single || source_.draw.of_objects();
+    const bool whole = packer_.has_rare() || everywhere || single || source_.draw.drawn_alike();
     if (nodes.size() <= 1 || whole) send_whole(nodes);
     else send_apart();
     note_content(source_);

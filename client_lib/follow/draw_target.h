@@ -37,7 +37,9 @@ public:
     /// Not a window or pixel buffer: it is made of objects, and all nodes hold the same of it but for what
     /// DrawnTarget::parts() says.
     bool of_objects() const { return objects_ != nullptr; }
-    /// Null: it is not.
+    /// All nodes draw the same of what its layers get.
+    bool drawn_alike() const { return objects_ != nullptr && objects_->parts() == nullptr; }
+    /// Null: it is not made of any.
     DrawnTarget* objects() const { return objects_; }
 
     // ---- any application thread that has it current ----

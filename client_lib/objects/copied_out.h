@@ -20,7 +20,7 @@ public:
         bool operator==(const Place&) const = default;
     };
 
-    /// It was cleared, or something was copied over all of it.
+    /// Its colours or depths were cleared, or something was copied over all of it.
     void note_redrawn() { redrawn_ = true; }
     /// In the window's frame of that number all of it was copied there as it is. Whether it is a habit.
     bool note(std::uint32_t frame, const Place& to) {

@@ -32,8 +32,11 @@ struct LayerGeometry {
     std::int32_t offset_y() const { return surface.bottom() - area.bottom(); }
     /// The layer in the surface's pixels, y up; in the window's, if it is not scaled.
     geom::Rect pixels() const { return {offset_x(), offset_y(), area.width, area.height}; }
-    /// What the layer holds of the window.
+    /// What the layer holds of the window, as far as it changes.
     geom::PixelRect window_area() const {
+        if (part)
+            return {static_cast<float>(part->x), static_cast<float>(part->y), static_cast<float>(part->x + part->width),
+                    static_cast<float>(part->y + part->height)};
         const auto left = static_cast<float>(offset_x() / scale_x()),
                    bottom = static_cast<float>(offset_y() / scale_y());
         return {left, bottom, left + static_cast<float>(area.width / scale_x()),

@@ -84,8 +84,8 @@ protected:
     Dealer dealer{nodes, updater, false};
     Sight sight;
     WindowContents windows{nodes, dealer};
-    DrawnParts drawn{nodes, open};
-    Followers followers{nodes, updater, hidden, dealer, windows, drawn, sight};
+    DrawnParts in_parts{nodes, open};
+    Followers followers{nodes, updater, hidden, dealer, windows, in_parts, sight};
     ClientSurface surface{SurfaceId(1), {}};
     glstate::State state;
     UseStamp used;
