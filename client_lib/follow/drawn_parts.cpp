@@ -204,9 +204,10 @@ bool DrawnParts::sees_images(const DrawSource& source) {
     return std::ranges::any_of(uses, [](const auto& use) { return use.second > 0; });
 }
 
+/// What shaders write every node must write alike.
 void DrawnParts::end_if_needed(const DrawSource& source) {
     const DrawnTarget* const own = source.draw.objects();
-    if (own && own->parts() && !still_good(*own)) return end(*source.share);
+    if (own && own->parts() && (!still_good(*own) || source.objects.writes())) return end(*source.share);
     UseStamp& seen = seen_[source.id];
     if (seen == source.used) return;
     if (sees_images(source)) return end(*source.share);
@@ -215,13 +216,25 @@ void DrawnParts::end_if_needed(const DrawSource& source) {
 
 void DrawnParts::before_object_changes(ClientName object) {
     if (drawn_.empty()) return;
-    if (const Drawn* const drawn = find(object)) end(*std::shared_ptr(drawn->share));
+    if (const Drawn* const drawn = find(object)) end(*drawn);
+}
+
+void DrawnParts::forget(ClientName object) {
+    for (Drawn& drawn : drawn_) std::erase(drawn.images, object);
+    const auto gone = std::ranges::find(drawn_, object, &Drawn::target_id);
+    if (gone != drawn_.end()) end(*gone);
+}
+
+/// With all of its group.
+void DrawnParts::end(const Drawn& one) {
+    if (const auto share = one.share.lock()) return end(*share);
+    std::erase_if(drawn_, [](const Drawn& drawn) { return drawn.share.expired(); });
 }
 
 void DrawnParts::end(const ShareGroup& share) {
     std::vector<Drawn> over;
     std::erase_if(drawn_, [&](Drawn& drawn) {
-        if (drawn.share.get() != &share) return false;
+        if (drawn.share.lock().get() != &share) return false;
         over.push_back(std::move(drawn));
         return true;
     });
@@ -233,15 +246,17 @@ void DrawnParts::end(const ShareGroup& share) {
 }
 
 void DrawnParts::end_all() {
-    while (!drawn_.empty()) end(*std::shared_ptr(drawn_.front().share));
+    while (!drawn_.empty()) end(drawn_.front());
 }
 
 // ---- all of an image, of what each node has ----
 
 void DrawnParts::gather(const Drawn& drawn) {
-    std::lock_guard lock(drawn.share->mutex);
+    const auto share = drawn.share.lock();
+    if (!share) return;
+    std::lock_guard lock(share->mutex);
     for (const ClientName image : drawn.images)
-        if (const auto found = drawn.share->by_id.find(image); found != drawn.share->by_id.end())
+        if (const auto found = share->by_id.find(image); found != share->by_id.end())
             gather(*drawn.parts, *found->second);
 }
 

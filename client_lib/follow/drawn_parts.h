@@ -35,8 +35,10 @@ public:
     void before_drawing(const DrawSource& source) {
         if (!drawn_.empty()) end_if_needed(source);
     }
-    /// Before content of the object changes, or is asked for.
+    /// Before content of the object changes.
     void before_object_changes(ClientName object);
+    /// The nodes are told that it is gone.
+    void forget(ClientName object);
     /// Before anything else that may read images of the group.
     void end(const ShareGroup& share);
     void end_all();
@@ -44,7 +46,7 @@ public:
 private:
     /// A target that is drawn in parts.
     struct Drawn {
-        std::shared_ptr<ShareGroup> share;
+        std::weak_ptr<ShareGroup> share;
         std::weak_ptr<DrawnTarget> target;
         ClientName target_id;
         std::vector<ClientName> images;
@@ -59,6 +61,7 @@ private:
     void end_if_needed(const DrawSource& source);
     bool sees_images(const DrawSource& source);
     Drawn* find(ClientName image);
+    void end(const Drawn& one);
     void tell(const Drawn& drawn, const DrawnTarget* target);
     void gather(const Drawn& drawn);
     void gather(const ImageParts& parts, const Object& image);

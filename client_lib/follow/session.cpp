@@ -295,6 +295,7 @@ void ClientSession::delete_object(ContextId context, ClientName object) {
         if (node.object_stamps.erase(object) != 0) glapi::pack::ObjectDelete(buffer, object);
         node.hollow.erase(object);
     });
+    packing([&] { drawn_.forget(object); });
     std::lock_guard lock(mutex_);
     nodes_.kept().forget(object);
 }
