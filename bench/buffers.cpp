@@ -162,7 +162,8 @@ int main(int argc, char** argv) {
     Options o;
     if (!parse(argc, argv, o)) {
         std::fputs(
-            "usage: buffers [--glsl] [--rewrite] [--off-window] [--draws N] [--frames N] [--size WxH] [--mesh COLUMNSxROWS]\n"
+            "usage: buffers [--glsl] [--rewrite] [--off-window] [--draws N] [--frames N] [--size WxH]\n"
+            "               [--mesh COLUMNSxROWS]\n"
             "Draws N frames of a lit mesh of 1,001,000 triangles in buffer objects and prints frames/s.\n"
             "--glsl: by a shader. --rewrite: its vertices are written anew for every frame.\n"
             "--off-window: it is drawn to a framebuffer object, and copied to the window as it is.\n"

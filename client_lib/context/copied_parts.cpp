@@ -18,7 +18,8 @@ CopyOfParts::CopyOfParts(Context& c, const Corners& from, const Corners& to, GLb
     }
     const bool as_it_is = from.x0 < from.x1 && from.y0 < from.y1 && to.x1 - to.x0 == from.x1 - from.x0 &&
                           to.y1 - to.y0 == from.y1 - from.y0;
-    moved_ = {draw_ ? draw_->id.value : c_.read_surface()->id.value, to.x0 - from.x0, to.y0 - from.y0};
+    moved_ = {draw_ ? draw_->id : ClientName(), draw_ ? SurfaceId() : c_.read_surface()->id, to.x0 - from.x0,
+              to.y0 - from.y0};
     is_plain_ = as_it_is && (mask & GL_COLOR_BUFFER_BIT) != 0 && takes_all(from) && comes_to_all(to);
     if (!read_->parts() || goes_on()) return;
     ends_behind_ = as_it_is && draw_ && makes_pixels();

@@ -91,7 +91,7 @@ std::shared_ptr<ImageParts> DrawnParts::parts_in(const ClientSurface& window, st
 
 std::shared_ptr<ImageParts> DrawnParts::parts_in(const ImageParts& between, std::int32_t x, std::int32_t y) const {
     auto parts = std::make_shared<ImageParts>(between);
-    parts->between = between.id;
+    parts->between = between.stamp;
     parts->x = x, parts->y = y;
     for (TargetLayer& layer : parts->layers) layer.area = moved(layer.area, x, y);
     return parts;
@@ -133,7 +133,7 @@ void DrawnParts::add(const std::shared_ptr<DrawnTarget>& target, const DrawSourc
     }
     if (!hold_all(drawn) || std::ranges::any_of(drawn.images, [&](ClientName image) { return find(image) != nullptr; }))
         return;
-    parts->id = next_stamp();
+    parts->stamp = next_stamp();
     parts->nodes = nodes_.changes();
     parts->definition = target->defined();
     target->draw_parts(std::move(parts));
@@ -169,7 +169,7 @@ bool DrawnParts::suffice(DrawnTarget& target, const DrawTarget& copied_to, std::
     const ImageParts& parts = *target.parts();
     if (!still_good(target) || parts.x != x || parts.y != y) return false;
     const DrawnTarget* const between = copied_to.objects();
-    if (between) return between->parts() && between->parts()->id == parts.between;
+    if (between) return between->parts() && between->parts()->stamp == parts.between;
     const ClientSurface* const window = copied_to.pictured_surface();
     return window && parts.between == 0 && window->id == parts.window;
 }

@@ -11,7 +11,7 @@
 namespace wall::client {
 
 struct ImageParts {
-    std::uint64_t id = 0;             ///< unique in the process
+    std::uint64_t stamp = 0;          ///< when they were made
     std::vector<TargetLayer> layers;  ///< of all nodes; the area of each is its part, in pixels of the images
 
     // What that follows from.
@@ -19,7 +19,7 @@ struct ImageParts {
     std::uint32_t layout = 0;      ///< of the window: its version
     std::uint64_t nodes = 0;       ///< Nodes::changes()
     std::uint64_t definition = 0;  ///< DrawnTarget::defined()
-    std::uint64_t between = 0;     ///< id of the parts of the target that it is copied to; 0: that is the window
+    std::uint64_t between = 0;     ///< stamp of the parts of the target that it is copied to; 0: that is the window
     std::int32_t x = 0, y = 0;     ///< where its first pixel comes there
 };
 

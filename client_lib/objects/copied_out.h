@@ -15,7 +15,8 @@ public:
     static constexpr unsigned kMostFrames = 4096;  ///< the same after it has been broken, each time eight times more
 
     struct Place {
-        std::uint64_t target = 0;   ///< that it is copied to: an id
+        ClientName object;          ///< that it is copied to; 0: it is a window
+        SurfaceId window;           ///< or this
         std::int32_t x = 0, y = 0;  ///< where its first pixel comes
         bool operator==(const Place&) const = default;
     };

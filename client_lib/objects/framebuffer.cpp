@@ -168,9 +168,8 @@ bool Framebuffer::has_plain_images() const {
     return std::ranges::all_of(attachments_, [](const Attachment& attachment) {
         if (!attachment.texture) return true;
         const Texture& texture = *attachment.texture;
-        const GLenum target = texture.info.target;
-        const bool flat =
-            target == GL_TEXTURE_2D || target == GL_TEXTURE_RECTANGLE || target == GL_TEXTURE_2D_MULTISAMPLE;
+        const glapi::TextureTargetInfo& info = texture.info;
+        const bool flat = glapi::spatial_dimensions_of(info) == 2 && info.layers == 0 && info.first_face == 0;
         const auto defined = std::ranges::count_if(texture.faces[0], &TextureLevel::defined);
         return flat && !texture.view.origin && attachment.level == 0 && defined == 1;
     });

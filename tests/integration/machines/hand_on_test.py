@@ -82,7 +82,7 @@ class HandOn(unittest.TestCase):
                     shown.append(self.step(session))
                     self.wall.ctl("close", session)  # or the next one would find what it has on the nodes
                     self.wall._until(lambda: not self.wall.sessions(), "the program has ended")
-                self.assertGreater(shown[0].std(), 20, "there is something to be seen")
+                self.assertGreater(shown[0].std(), 2, "the mesh has light and shade")
                 self.assertEqual(int((shown[0] != shown[1]).any(axis=2).sum()), 0)
                 self.wait_for_handed_on(before, size)
                 time.sleep(1.5)

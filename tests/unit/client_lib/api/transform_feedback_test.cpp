@@ -238,7 +238,8 @@ TEST_F(TransformFeedbackTest, ALateNodeIsToldTheCounts) {
     ASSERT_TRUE(capture.is_drawn());
     capture.pack_changes(0, late, no_limit);
     EXPECT_EQ(late.commands(), 0u);
-    capture.pack_drawn([](const auto&, const ImageRows&) { return std::vector<std::byte>(8 * kVertexStreams); }, late, no_limit);
+    capture.pack_drawn([](const auto&, const ImageRows&) { return std::vector<std::byte>(8 * kVertexStreams); }, late,
+                       no_limit);
     EXPECT_EQ(late.commands(), 1u);
 }
 

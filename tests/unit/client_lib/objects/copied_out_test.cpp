@@ -6,7 +6,7 @@
 namespace wall::client {
 namespace {
 
-constexpr CopiedOut::Place kWindow{7, 0, 0};
+constexpr CopiedOut::Place kWindow{{}, SurfaceId(7), 0, 0};
 
 /// Drawn anew and copied in each of these frames.
 bool copy(CopiedOut& copied, std::uint32_t first, unsigned frames, const CopiedOut::Place& to = kWindow) {
@@ -30,7 +30,7 @@ TEST(ThatAllIsCopiedOut, IsNoneWhereAFrameIsLeftOutOrGoesElsewhereOrIsNotDrawnAn
     copy(skips, 0, 7);
     EXPECT_FALSE(copy(skips, 8, 1));
     copy(moves, 0, 7);
-    EXPECT_FALSE(copy(moves, 7, 1, {7, 1, 0}));
+    EXPECT_FALSE(copy(moves, 7, 1, {{}, SurfaceId(7), 1, 0}));
     copy(stays, 0, 7);
     EXPECT_FALSE(stays.note(7, kWindow));
     EXPECT_FALSE(copy(stays, 8, 7));
@@ -44,7 +44,7 @@ TEST(ThatAllIsCopiedOut, GoesOnWhereItWouldBeNoted) {
     EXPECT_FALSE(copied.goes_on(8, kWindow)) << "it was not drawn anew";
     copied.note_redrawn();
     EXPECT_TRUE(copied.goes_on(8, kWindow));
-    EXPECT_FALSE(copied.goes_on(8, {8, 0, 0}));
+    EXPECT_FALSE(copied.goes_on(8, {ClientName(7), {}, 0, 0}));
     EXPECT_FALSE(copied.goes_on(9, kWindow));
 }
 
