@@ -65,8 +65,8 @@ class DrawnParts(unittest.TestCase):
             self.step(session, 20)
             of_mesh[in_parts] = (self.elements() - before) / 20 / (6 * COLUMNS * ROWS)
             self.wall.ctl("close", session)
-        print(f"all nodes together process {of_mesh[True]:.2f} times the mesh in parts, {of_mesh[False]:.2f} as a whole",
-              flush=True)
+        print(f"all nodes together process {of_mesh[True]:.2f} times the mesh in parts, {of_mesh[False]:.2f} as a "
+              "whole", flush=True)
         self.assertLess(of_mesh[True], 2.5)  # pieces of so small a mesh are large
         self.assertGreater(of_mesh[False], 3.9)
 
