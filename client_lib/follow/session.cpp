@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/follow/session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -81,7 +82,12 @@ StreamEvents ClientSession::stream_events() {
         if (!group_) surfaces_.ask_to_redraw();
     };
     const auto can_be_taken = [] {
-        if (const auto session = get_if_open()) session->control_->ask_all_to_redraw();
+        const auto session = get_if_open();
+        if (!session) return;
+        std::lock_guard lock(session->mutex_);  // who waited for it may have taken it by now: nothing is to be redrawn
+        const bool waits =
+            std::ranges::any_of(session->nodes_, [](const auto& node) { return node->attempt != nullptr; });
+        if (waits) session->control_->ask_all_to_redraw();
     };
     const auto stream_failed = [this] {
         if (!group_) control_->ask_all_to_redraw();  // the program's next frame opens the stream again
