@@ -11,57 +11,30 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import re
 import statistics
-import subprocess
 import sys
-import tempfile
-import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
+from buffers import MESH_ELEMENTS as ELEMENTS, MOST_PROCESSED, elements_of, run  # noqa: E402
 from wall import Wall, build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 SIDE, TILES, FRAMES = 600, (2, 2), 40
 PROGRAM = [str(build_folder() / "bench" / "buffers"), "--off-window", "--size", f"{SIDE}x{SIDE}", "--frames",
            str(FRAMES)]
-ELEMENTS = 3 * 1_001_000  # of the mesh
 CASES = {"fixed function": [], "GLSL": ["--glsl"]}
-MOST_PROCESSED = 1.3  # of the mesh, by all nodes together, in parts
 WARM_UP = 10  # frames, of which the first eight are drawn as a whole
-
-
-def run(command: list[str], environment: dict[str, str]) -> float:
-    """Frames a second, as the program says."""
-    done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True, timeout=300)
-    return float(re.search(r"([\d.]+) frames/s", done.stdout)[1])
-
-
-def elements_of(wall: Wall) -> int:
-    """What all nodes have processed, when they have said so: they do once a second."""
-    def now() -> int:
-        return sum(node["array_elements"] for node in wall.nodes())
-    before = -1
-    while (after := now()) != before:
-        before = after
-        time.sleep(2.5)
-    return after
 
 
 def on_wall(in_parts: bool, options: list[str], x: XServer) -> dict[str, float]:
     size = (SIDE // TILES[0], SIDE // TILES[1])
-    with Wall(tiles=TILES, tile_size=size, name="off-window",
-              swap_timeout_ms=10000) as wall, tempfile.TemporaryDirectory() as folder:
-        stats = Path(folder) / "stats.json"
-        rate = run(wall.wallrun(*PROGRAM, *options),
-                   x.environment(WALLGL_STATS=str(stats), WALLGL_DRAWN_PARTS="1" if in_parts else "0"))
-        counted = json.loads(stats.read_text())
+    with Wall(tiles=TILES, tile_size=size, name="off-window", swap_timeout_ms=10000) as wall:
+        rate = run(wall.wallrun(*PROGRAM, *options), x.environment(WALLGL_DRAWN_PARTS="1" if in_parts else "0"))
         elements = elements_of(wall)
     whole = TILES[0] * TILES[1] * ELEMENTS * (8 if in_parts else 0)
     frames = FRAMES + WARM_UP - (8 if in_parts else 0)
-    return {"frames_per_second": rate, "processed": (elements - whole) / frames / ELEMENTS,
-            "geometry_bytes": counted["total"]["geometry_bytes"] / counted["frames"]}
+    return {"frames_per_second": rate, "processed": (elements - whole) / frames / ELEMENTS}
 
 
 def main() -> int:

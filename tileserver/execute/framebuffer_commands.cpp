@@ -22,8 +22,9 @@ void FramebufferCommands::BindTargets(ClientName draw, ClientName read, std::uin
 
 void FramebufferCommands::TargetPart(ClientName name, std::int32_t x, std::int32_t y, std::uint32_t width,
                                      std::uint32_t height) {
-    constexpr std::uint32_t kMost = 1u << 24;  // pixels
-    if (width > kMost || height > kMost) return execution_.refuse("a part larger than any image");
+    constexpr std::int32_t kMost = 1 << 24;  // pixels
+    if (x < 0 || y < 0 || x > kMost || y > kMost || width > kMost || height > kMost)
+        return execution_.refuse("a part that is larger than any image, or outside of it");
     draw_part(name, geom::Rect{x, y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)});
 }
 

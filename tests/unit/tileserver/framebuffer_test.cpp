@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstring>
+#include <limits>
 
 #include "common/glstate/framebuffer.h"
 #include "common/wire/whole_window.h"
@@ -154,6 +155,9 @@ TEST_F(FramebufferTest, OnlyThePartThatIsNeededIsDrawn) {
     pack::TargetPart(whole.buffer(), kOther, 0, 0, 1, 1);  // which is not there
     session_->expect_run(whole);
     EXPECT_EQ(at(0, 0), kGreen);
+    for (const std::int32_t x : {-1, std::numeric_limits<std::int32_t>::max()})
+        EXPECT_THAT(refusal([x](wire::PackBuffer& b) { pack::TargetPart(b, kFramebuffer, x, 0, 1, 1); }),
+                    HasSubstr("outside of it"));
     EXPECT_THAT(refusal([](wire::PackBuffer& b) { pack::TargetPart(b, kFramebuffer, 0, 0, ~0u, 1); }),
                 HasSubstr("larger than any image"));
 }
