@@ -5,8 +5,10 @@ take it up."""
 from __future__ import annotations
 
 import dataclasses
+import json
 import subprocess
 import time
+from pathlib import Path
 from typing import Callable
 
 import cv2
@@ -37,6 +39,7 @@ SHOWN = (Part("drawn_once", (0, 0, 600, 180), still=True), Part("frame_clock", (
 FIRST = 2  # frames that a show begins with
 SETTLED = 0.3  # seconds after which what was told to be shown is shown
 GONE = 5.0  # seconds until a program that has ended is off the wall
+TOLD = 10.0  # seconds; a program writes its counters once a second
 
 
 def until(done: Callable[[], bool], what: str, limit: float) -> None:
@@ -45,6 +48,19 @@ def until(done: Callable[[], bool], what: str, limit: float) -> None:
         if time.monotonic() > end:
             raise AssertionError(f"not within {limit:.0f} s: {what}")
         time.sleep(0.05)
+
+
+def counters(stats: Path, frames: int) -> dict:
+    """What a program that runs with WALLGL_STATS has counted, `frames` frames included: it writes before it draws,
+    too."""
+    told: dict = {}
+
+    def are_there() -> bool:
+        told.update(json.loads(stats.read_text()) if stats.exists() else {})
+        return told.get("frames", 0) >= frames
+
+    until(are_there, f"the counters of {frames} frames in {stats}", TOLD)
+    return told
 
 
 class Playing:

@@ -1,11 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Programs of OpenGL ES on a wall, as they are: through EGL and GLVND's libGLESv2."""
-import json
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
@@ -13,6 +11,7 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 import cv2  # noqa: E402
 import numpy  # noqa: E402
+from show import counters  # noqa: E402
 from wall import Wall  # noqa: E402
 from xserver import XServer  # noqa: E402
 
@@ -39,10 +38,7 @@ class Es(unittest.TestCase):
         for name, color in GEARS.items():
             brightest = picture.argmax(axis=2) == color.index(1)
             self.assertGreater(int((brightest & (picture.max(axis=2) > 100)).sum()), 500, f"pixels of the {name} gear")
-        end = time.monotonic() + 10  # they are written every second
-        while not self.stats.exists() and time.monotonic() < end:
-            time.sleep(0.1)
-        self.assertEqual(json.loads(self.stats.read_text())["unsupported"], {})
+        self.assertEqual(counters(self.stats, FRAMES)["unsupported"], {})
         app.terminate()
         app.wait(10)
 

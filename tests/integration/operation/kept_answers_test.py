@@ -3,7 +3,6 @@
 """A program that starts again asks no node about its shaders: what was said is on the client's disk."""
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 import tempfile
@@ -12,12 +11,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
-from show import until  # noqa: E402
+from show import counters  # noqa: E402
 from wall import Wall, build_folder, end_all  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 PROGRAM = build_folder() / "tests" / "drawn_once"
-WRITTEN = 10.0  # seconds; once a second
+DRAWN = 3  # frames, after which everything was asked
 ABOUT_SHADERS = ("glCompileShader", "glLinkProgram")
 
 
@@ -39,13 +38,12 @@ class KeptAnswers(unittest.TestCase):
                             env=self.x.environment(WALLGL_CACHE=cache, WALLGL_STATS=str(stats)))
         try:
             session = self.wall.wait_session(app)
-            self.wall.wait(session, 3)
+            self.wall.wait(session, DRAWN)
             self.wall.hold(session)
             picture = self.wall.screenshot()
-            until(stats.exists, "the program has told its counters", WRITTEN)
+            asked = counters(stats, DRAWN)["round_trips_by_function"]
         finally:
             end_all([app])
-        asked = json.loads(stats.read_text())["round_trips_by_function"]
         return picture, sum(asked.get(name, 0) for name in ABOUT_SHADERS)
 
     def test_the_second_time_nobody_is_asked(self) -> None:
