@@ -216,6 +216,12 @@ class Suite(unittest.TestCase):
         self.assertEqual([(test.name, test.command[1:]) for test in chosen.tests],
                          [("spec@!opengl 1.1@b", ("-auto", "-fbo"))])
 
+    def test_the_parts_together_are_all(self):
+        tests = [Test(f"spec@!opengl 1.1@{n}", ("true",), "opengl") for n in range(300)]
+        parts = [piglit.Selection(tests, OFFER, piglit.read_arguments(["--part", f"{k}/3"])).tests for k in (1, 2, 3)]
+        self.assertEqual(sorted(test.name for part in parts for test in part), sorted(test.name for test in tests))
+        self.assertTrue(all(70 < len(part) < 130 for part in parts))
+
     def test_left_out_needs_a_reason(self):
         with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
             file.write('[[left_out]]\ntests = "a"\nreason = " "\n')

@@ -36,6 +36,7 @@ is no failure.
     piglit.py                                   everything, on one tile
     piglit.py --tiles 4x3 --tile-size 144x150   on twelve tiles so small that windows cross their borders
     piglit.py --fbo                             into framebuffer objects what piglit itself would draw there
+    piglit.py --part 2/4                        a quarter of the tests
     piglit.py --filter 'texwrap|copy-pixels'    tests whose name has this
     piglit.py --filter 'pbo$' --list            which these are, and how each is started by hand
 
@@ -49,6 +50,13 @@ def pair(text: str) -> tuple[int, int]:
     found = re.fullmatch(r"(\d+)x(\d+)", text)
     if not found:
         raise argparse.ArgumentTypeError(f"'{text}', expected two numbers as 2x2")
+    return int(found[1]), int(found[2])
+
+
+def part(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d+)/(\d+)", text)
+    if not found or not 1 <= int(found[1]) <= int(found[2]):
+        raise argparse.ArgumentTypeError(f"'{text}', expected one of some as 2/4")
     return int(found[1]), int(found[2])
 
 
@@ -67,6 +75,8 @@ def read_arguments(given: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--all", action="store_true", help="also what selection.toml leaves out")
     parser.add_argument("--sample", type=int, default=1, metavar="N",
                         help=f"of groups of more than {LARGE_GROUP} tests only one of N, always the same; default all")
+    parser.add_argument("--part", type=part, default=(1, 1), metavar="K/N",
+                        help="the K-th of N parts, always the same, which together are all")
     parser.add_argument("--fbo", action="store_true",
                         help="tests that can, draw into framebuffer objects; the others are left out")
     parser.add_argument("--list", action="store_true", help="only print the tests")
@@ -101,6 +111,8 @@ class Selection:
                 self.tests.append(in_framebuffer(test) if options.fbo else test)
         if options.sample > 1:
             self.tests = sample(self.tests, options.sample, lambda test: group_of(test.name, offer))
+        which, of = options.part
+        self.tests = [test for test in self.tests if zlib.crc32(b"part " + test.name.encode()) % of == which - 1]
 
 
 def sample(tests: list[Test], of: int, group: Callable[[Test], str]) -> list[Test]:
