@@ -12,9 +12,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "bench/gl_window.h"
+#include "bench/off_window.h"
 
 namespace {
 
@@ -24,7 +26,8 @@ struct Options {
     int width = 600, height = 600;
     int draws = 0;  ///< a frame, of small meshes; 0: one of the large one
     bool glsl = false, rewrite = false;
-    bool off_window = false;  ///< drawn to a framebuffer object, and copied to the window from there
+    bool off_window = false;  ///< drawn to a framebuffer object, and brought to the window from there
+    bool as_texture = false;  ///< on a rectangle
 };
 
 struct Vertex {
@@ -93,48 +96,20 @@ void draw_many(const std::vector<Mesh>& meshes, int draws) {
     }
 }
 
-GLuint shader(GLenum type, const char* source) {
-    const GLuint name = glCreateShader(type);
-    glShaderSource(name, 1, &source, nullptr);
-    glCompileShader(name);
-    return name;
-}
-
 void use_program() {
     const GLuint program = glCreateProgram();
-    glAttachShader(program, shader(GL_VERTEX_SHADER,
-                                   "varying float light;\n"
-                                   "void main() {\n"
-                                   "    light = max(normalize(gl_NormalMatrix * gl_Normal).z, 0.0);\n"
-                                   "    gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;\n"
-                                   "}\n"));
-    glAttachShader(program, shader(GL_FRAGMENT_SHADER,
-                                   "varying float light;\n"
-                                   "void main() { gl_FragColor = vec4(vec3(0.2 + 0.8 * light), 1.0); }\n"));
+    glAttachShader(program, wall::bench::shader(GL_VERTEX_SHADER,
+                                                "varying float light;\n"
+                                                "void main() {\n"
+                                                "    light = max(normalize(gl_NormalMatrix * gl_Normal).z, 0.0);\n"
+                                                "    gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;\n"
+                                                "}\n"));
+    glAttachShader(program,
+                   wall::bench::shader(GL_FRAGMENT_SHADER,
+                                       "varying float light;\n"
+                                       "void main() { gl_FragColor = vec4(vec3(0.2 + 0.8 * light), 1.0); }\n"));
     glLinkProgram(program);
     glUseProgram(program);
-}
-
-/// Colours and depths of so many pixels.
-GLuint make_framebuffer(int width, int height) {
-    GLuint framebuffer = 0, images[2] = {};
-    glGenFramebuffers(1, &framebuffer);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glGenRenderbuffers(2, images);
-    constexpr GLenum kFormats[] = {GL_RGBA8, GL_DEPTH_COMPONENT24},
-                     kPoints[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
-    for (int i = 0; i < 2; ++i) {
-        glBindRenderbuffer(GL_RENDERBUFFER, images[i]);
-        glRenderbufferStorage(GL_RENDERBUFFER, kFormats[i], width, height);
-        glFramebufferRenderbuffer(GL_FRAMEBUFFER, kPoints[i], GL_RENDERBUFFER, images[i]);
-    }
-    return framebuffer;
-}
-
-void copy_to_window(GLuint framebuffer, int width, int height) {
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
 bool parse(int argc, char** argv, Options& o) {
@@ -148,6 +123,7 @@ bool parse(int argc, char** argv, Options& o) {
         if (is("--glsl")) o.glsl = true;
         else if (is("--rewrite")) o.rewrite = true;
         else if (is("--off-window")) o.off_window = true;
+        else if (is("--as-texture")) o.off_window = o.as_texture = true;
         else if (number("--frames", o.frames) || number("--draws", o.draws)) continue;
         else if (is("--size") && i + 1 < argc && std::sscanf(argv[++i], "%dx%d", &o.width, &o.height) == 2) continue;
         else if (is("--mesh") && i + 1 < argc && std::sscanf(argv[++i], "%dx%d", &o.columns, &o.rows) == 2) continue;
@@ -162,11 +138,12 @@ int main(int argc, char** argv) {
     Options o;
     if (!parse(argc, argv, o)) {
         std::fputs(
-            "usage: buffers [--glsl] [--rewrite] [--off-window] [--draws N] [--frames N] [--size WxH]\n"
+            "usage: buffers [--glsl] [--rewrite] [--off-window | --as-texture] [--draws N] [--frames N] [--size WxH]\n"
             "               [--mesh COLUMNSxROWS]\n"
             "Draws N frames of a lit mesh of 1,001,000 triangles in buffer objects and prints frames/s.\n"
             "--glsl: by a shader. --rewrite: its vertices are written anew for every frame.\n"
-            "--off-window: it is drawn to a framebuffer object, and copied to the window as it is.\n"
+            "--off-window: it is drawn to a framebuffer object, and copied to the window as it is. --as-texture: it\n"
+            "comes there as a texture on a rectangle.\n"
             "--mesh COLUMNSxROWS: of twice as many triangles; 1001x500 if it is not given.\n"
             "--draws: instead, so many draws a frame of 1000 meshes of 24 triangles, each at a place of its own.\n",
             stderr);
@@ -188,7 +165,8 @@ int main(int argc, char** argv) {
     glEnableClientState(GL_VERTEX_ARRAY);
     glEnableClientState(GL_NORMAL_ARRAY);
 
-    const GLuint framebuffer = o.off_window ? make_framebuffer(o.width, o.height) : 0;
+    std::optional<wall::bench::OffWindow> picture;
+    if (o.off_window) picture.emplace(o.width, o.height, o.as_texture);
     auto start = std::chrono::steady_clock::now();
     const int warm_up = o.off_window ? 10 : 3;  // the nodes get the buffers, and what is a habit has become one
     for (int frame = -warm_up; frame < o.frames; ++frame) {
@@ -197,7 +175,7 @@ int main(int argc, char** argv) {
         if (o.rewrite) rewrite(meshes[0], 0.05f * static_cast<float>(frame));
         if (o.draws != 0) draw_many(meshes, o.draws);
         else draw(meshes[0]);
-        if (o.off_window) copy_to_window(framebuffer, o.width, o.height);
+        if (picture) picture->show();
         window.swap();
     }
     glFinish();

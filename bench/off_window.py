@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""What it gains that each node draws only its part of a framebuffer object that is copied to the window as it is
-(docs/framebuffers.md, "Drawn in parts"): a mesh of 1,001,000 triangles in buffers, drawn off the window
-(bench/buffers.cpp) on plain Mesa and on 2x2 tiles, in parts and by every node as a whole, taken in turns.
+"""What it gains that each node draws only its part of a framebuffer object that is brought to the window as it is
+(docs/framebuffers.md, "Drawn in parts"), by a blit or as a texture: a mesh of 1,001,000 triangles in buffers, drawn off
+the window (bench/buffers.cpp) on plain Mesa and on 2x2 tiles, in parts and by every node as a whole, taken in turns.
 
 off_window.py [--rounds N] [--json FILE]      exit code 1 if it is no faster in parts, or more is processed than wanted
 """
@@ -23,7 +23,7 @@ from xserver import XServer  # noqa: E402
 SIDE, TILES, FRAMES = 600, (2, 2), 40
 PROGRAM = [str(build_folder() / "bench" / "buffers"), "--off-window", "--size", f"{SIDE}x{SIDE}", "--frames",
            str(FRAMES)]
-CASES = {"fixed function": [], "GLSL": ["--glsl"]}
+CASES = {"fixed function": [], "GLSL": ["--glsl"], "as a texture": ["--as-texture"]}
 WARM_UP = 10  # frames, of which the first eight are drawn as a whole
 
 

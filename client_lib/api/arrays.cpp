@@ -17,6 +17,7 @@
 #include "client_lib/context/lists.h"
 #include "client_lib/context/node_draw.h"
 #include "client_lib/context/program_use.h"
+#include "client_lib/context/sampled_parts.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/staged_draw.h"
 #include "client_lib/context/vertex_array_objects.h"
@@ -188,29 +189,19 @@ bool has_arrays_of_es1(const Context& c) {
 
 /// Draws one instance into the block or the list.
 void draw_inline(Context& c, const ArrayDraw& draw, GLsizei instance) {
-    ElementRange elements{.first = draw.first,
-                          .count = draw.count,
-                          .type = draw.index_type,
-                          .indices = draw.indices,
-                          .base_vertex = draw.base_vertex,
-                          .restart = draw.restart,
-                          .instance = instance};
-    if (draw.index_type == 0) return draw_elements(c, draw.mode, elements);
     BufferReading reading;
-    if (const ClientName buffer(c.state.vertex_arrays.element_array_buffer); buffer) {
-        reading = buffer_content(c, buffer, reinterpret_cast<std::uintptr_t>(draw.indices));
-        const auto content = reading.bytes();
-        const std::size_t have = content.size() / glstate::index_bytes(draw.index_type);
-        elements.indices = content.data();
-        elements.count = static_cast<GLsizei>(std::min<std::size_t>(static_cast<std::size_t>(draw.count), have));
-    }
-    if (elements.indices) draw_elements(c, draw.mode, elements);
+    const ElementRange elements = elements_of(c, draw, instance, reading);
+    if (draw.index_type == 0 || elements.indices) draw_elements(c, draw.mode, elements);
 }
 
 }  // namespace
 
 void draw(Context& c, const ArrayDraw& draw) {
-    if (!c.profile.is_es1() || !draw_by_sizes(c, draw)) draw_of_one_size(c, draw);
+    if (c.profile.is_es1() && draw_by_sizes(c, draw)) return;
+    if (!DrawOfParts::may_copy(c, draw)) return draw_of_one_size(c, draw);
+    DrawOfParts of_parts(c, draw);
+    draw_of_one_size(c, draw);
+    of_parts.finish();
 }
 
 void draw_of_one_size(Context& c, const ArrayDraw& draw) {

@@ -33,8 +33,10 @@ void clear(Context& c, GLbitfield mask, Pack&& pack) {
     c.flush_block();
     c.session().before_clear(c.draw_source(), mask, c.draw_target() && leaves_nothing(c, mask));
     c.draw(scissor_box(c.state), needs_of_clear(), pack);
-    if (c.framebuffers->draw && (mask & (GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT)) != 0)
-        c.framebuffers->draw->copied.note_redrawn();
+    if (c.framebuffers->draw && (mask & (GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT)) != 0) {
+        std::lock_guard lock(c.share().mutex);
+        c.framebuffers->draw->note_redrawn();
+    }
     if (c.draw_target() && clears_all(c, mask)) c.draw_target().note_cleared();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Copies out of framebuffer objects (glBlitFramebuffer), as those see them who draw such objects in parts
-// (follow/drawn_parts.h). The application's thread.
+// Copies out of framebuffer objects, as those see them who draw such objects in parts (follow/drawn_parts.h): by
+// glBlitFramebuffer, and what they have in common with draws that copy (sampled_parts.h). The application's thread.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace wall::client {
 
-/// One copy.
+/// One blit.
 class CopyOfParts {
 public:
     /// Window pixels; x1 and y1 are past the end, and below x0 and y0 where it is mirrored.
@@ -26,9 +26,8 @@ public:
 private:
     bool takes_all(const Corners& from) const;
     bool comes_to_all(const Corners& to) const;
+    bool has_samples() const;
     bool makes_pixels() const;
-    bool goes_on();
-    void note_habit();
 
     Context& c_;
     const std::shared_ptr<Framebuffer> read_, draw_;  ///< `draw_` null: the window
@@ -36,6 +35,17 @@ private:
     bool is_plain_ = false;                           ///< all of it, as it is, to all of that or to the window
     bool ends_behind_ = false;                        ///< what is read from is drawn in parts until then
 };
+
+// ---- any copy of a target as it is, into what the context draws to ----
+
+/// Where the target's first pixel comes, at (x, y).
+CopiedOut::Place place_of_copy(const Context& c, GLint x, GLint y);
+/// What the context draws to is the back buffer of its window.
+bool draws_to_back_buffer(const Context& c);
+/// The target is drawn in parts, and the copy takes no more than each node has: it is made as before.
+bool goes_on(Context& c, DrawnTarget& copied, const CopiedOut::Place& to);
+/// Behind it. From the habit on it is drawn in parts.
+void note_copy(Context& c, const std::shared_ptr<DrawnTarget>& copied, const CopiedOut::Place& to);
 
 /// Before all of the images of framebuffer objects may be needed on every node.
 inline void want_whole_images(Context& c) {

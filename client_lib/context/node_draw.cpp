@@ -330,6 +330,24 @@ bool may_come_along(const ArrayDraw& draw) {
 
 }  // namespace
 
+ElementRange elements_of(Context& c, const ArrayDraw& draw, GLsizei instance, BufferReading& reading) {
+    ElementRange out{.first = draw.first,
+                     .count = draw.count,
+                     .type = draw.index_type,
+                     .indices = draw.indices,
+                     .base_vertex = draw.base_vertex,
+                     .restart = draw.restart,
+                     .instance = instance};
+    const ClientName buffer(c.state.vertex_arrays.element_array_buffer);
+    if (draw.index_type == 0 || !buffer) return out;
+    reading = buffer_content(c, buffer, reinterpret_cast<std::uintptr_t>(draw.indices));
+    const auto content = reading.bytes();
+    const std::size_t have = content.size() / glstate::index_bytes(draw.index_type);
+    out.indices = content.data();
+    out.count = static_cast<GLsizei>(std::min<std::size_t>(static_cast<std::size_t>(draw.count), have));
+    return out;
+}
+
 bool draw_on_nodes(Context& c, const ArrayDraw& draw) {
     if (!c.at_once() || !c.draw_target()) return false;
     const bool indexed = draw.index_type != 0, in_buffer = c.state.vertex_arrays.element_array_buffer != 0;

@@ -25,6 +25,9 @@ struct ArrayDraw {
     GLuint base_instance = 0;  ///< the first one; of draw() only (api/array_draws.h)
 };
 
+/// Its elements, of one instance. The indices stay while `reading` does; there are fewer where their buffer ends.
+ElementRange elements_of(Context& c, const ArrayDraw& draw, GLsizei instance, BufferReading& reading);
+
 /// False: nothing was done, and the draw must be made from the arrays as they are in memory (draw_elements), because
 /// they do not lie in buffers, change as often as they are drawn, reach beyond their buffers, or because a display list
 /// is being compiled.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kAnswerLimitMs = 5000;  // a node answers behind all that it has to draw before
 constexpr PixelRect kEverything{-1e9f, -1e9f, 1e9f, 1e9f}, kNowhere{2e9f, 2e9f, 2e9f, 2e9f};
-constexpr float kMargin = 1;  // pixel, of what a scaled window is made of at the border of a tile
+constexpr float kMargin = 2;  // pixels: one that a scaled window is made of at the border of a tile, one beside it
 
 void enclose(PixelRect& all, const PixelRect& more) {
     if (all.x0 == kNowhere.x0) all = more;
@@ -48,6 +48,20 @@ bool is_worth_it(const ImageParts& parts) {
            }) > 1;
 }
 
+/// Pixels of the canvas that an image covers which begins there in the window; edges are rounded as those of layers.
+std::uint32_t shown_pixels(std::int32_t first, std::uint32_t pixels, double scale) {
+    const auto edge = [&](double at) { return std::floor(at * scale + 0.5); };
+    return static_cast<std::uint32_t>(edge(static_cast<double>(first) + pixels) - edge(first));
+}
+
+/// At the wall's resolution.
+void enlarge(ImageParts& parts, std::uint32_t width, std::uint32_t height) {
+    parts.images_width = parts.images_height = 0;
+    if (parts.scale_x == 1 && parts.scale_y == 1) return;
+    parts.images_width = shown_pixels(parts.window_x, width, parts.scale_x);
+    parts.images_height = shown_pixels(parts.window_y, height, parts.scale_y);
+}
+
 /// What one node has of some rows of an image, over what others have.
 void put_part(const PixelRect& part, const ImageRows& rows, std::span<const std::byte> from, std::span<std::byte> to) {
     const auto width = static_cast<std::uint32_t>(rows.width);
@@ -74,7 +88,10 @@ std::shared_ptr<ImageParts> DrawnParts::parts_in(const ClientSurface& window, st
     auto parts = std::make_shared<ImageParts>();
     parts->window = window.id;
     parts->layout = layout.version;
-    parts->x = x, parts->y = y;
+    parts->x = parts->window_x = x, parts->y = parts->window_y = y;
+    const double scale_x = static_cast<double>(layout.rect.width) / layout.width,
+                 scale_y = static_cast<double>(layout.rect.height) / layout.height;
+    if (scale_x >= 1 && scale_y >= 1) parts->scale_x = scale_x, parts->scale_y = scale_y;
     for (TargetLayer layer : nodes_.everywhere()) {
         layer.area = nodes_[layer].records() ? kEverything : kNowhere;
         for (const TargetLayer& shown : layout.layers)
@@ -93,6 +110,8 @@ std::shared_ptr<ImageParts> DrawnParts::parts_in(const ImageParts& between, std:
     auto parts = std::make_shared<ImageParts>(between);
     parts->between = between.stamp;
     parts->x = x, parts->y = y;
+    parts->window_x += x, parts->window_y += y;
+    if (between.images_width == 0) parts->scale_x = parts->scale_y = 1;
     for (TargetLayer& layer : parts->layers) layer.area = moved(layer.area, x, y);
     return parts;
 }
@@ -127,12 +146,14 @@ void DrawnParts::add(const std::shared_ptr<DrawnTarget>& target, const DrawSourc
     Drawn drawn{source.share, target, target->target_id(), {}, parts};
     {
         std::lock_guard lock(source.share->mutex);
+        if (!target->may_be_larger()) parts->scale_x = parts->scale_y = 1;
         target->for_each_image([&](const Object& image) {
             if (std::ranges::find(drawn.images, image.id) == drawn.images.end()) drawn.images.push_back(image.id);
         });
     }
     if (!hold_all(drawn) || std::ranges::any_of(drawn.images, [&](ClientName image) { return find(image) != nullptr; }))
         return;
+    enlarge(*parts, target->width(), target->height());
     parts->stamp = next_stamp();
     parts->nodes = nodes_.changes();
     parts->definition = target->defined();
@@ -154,7 +175,8 @@ void DrawnParts::tell(const Drawn& drawn, const DrawnTarget* target) {
         }
         const geom::Rect part = pixels_of(layer.area, target->width(), target->height());
         glapi::pack::TargetPart(buffer, drawn.target_id, part.x, part.y, static_cast<std::uint32_t>(part.width),
-                                static_cast<std::uint32_t>(part.height));
+                                static_cast<std::uint32_t>(part.height), drawn.parts->images_width,
+                                drawn.parts->images_height);
     }
 }
 
@@ -166,12 +188,12 @@ bool DrawnParts::still_good(const DrawnTarget& target) const {
 }
 
 bool DrawnParts::suffice(DrawnTarget& target, const DrawTarget& copied_to, std::int32_t x, std::int32_t y) {
-    const ImageParts& parts = *target.parts();
-    if (!still_good(target) || parts.x != x || parts.y != y) return false;
+    const ImageParts* const parts = target.parts();
+    if (!parts || !still_good(target) || parts->x != x || parts->y != y) return false;
     const DrawnTarget* const between = copied_to.objects();
-    if (between) return between->parts() && between->parts()->stamp == parts.between;
+    if (between) return between->parts() && between->parts()->stamp == parts->between;
     const ClientSurface* const window = copied_to.pictured_surface();
-    return window && parts.between == 0 && window->id == parts.window;
+    return window && parts->between == 0 && window->id == parts->window;
 }
 
 DrawnParts::Drawn* DrawnParts::find(ClientName image) {
@@ -180,8 +202,8 @@ DrawnParts::Drawn* DrawnParts::find(ClientName image) {
     return found == drawn_.end() ? nullptr : &*found;
 }
 
-/// Whether a draw looks at images that are drawn in parts, or draws to them by another target. That a target is bound
-/// to be read from is no use of it.
+/// Whether a draw looks at images that are drawn in parts otherwise than it may, or draws to them by another target.
+/// That a target is bound to be read from is no use of it.
 bool DrawnParts::sees_images(const DrawSource& source) {
     std::unordered_map<ClientName, int> uses;
     const DrawnTarget* const own = source.draw.objects();
@@ -198,6 +220,9 @@ bool DrawnParts::sees_images(const DrawSource& source) {
         });
     }
     if (other_target) return true;
+    if (const auto allowed = allowed_.find(source.id); allowed != allowed_.end())
+        for (const ClientName image : allowed->second)
+            if (find(image)) --uses[image];
     source.objects.for_each_used([&](const Object& object) {
         if (find(object.id)) ++uses[object.id];
     });
@@ -211,7 +236,12 @@ void DrawnParts::end_if_needed(const DrawSource& source) {
     UseStamp& seen = seen_[source.id];
     if (seen == source.used) return;
     if (sees_images(source)) return end(*source.share);
-    seen = source.used;
+    if (!allowed_.contains(source.id)) seen = source.used;
+}
+
+void DrawnParts::allow(ContextId context, std::vector<ClientName> images) {
+    if (images.empty()) allowed_.erase(context);
+    else allowed_[context] = std::move(images);
 }
 
 void DrawnParts::before_object_changes(ClientName object) {

@@ -31,13 +31,17 @@ public:
     /// Whether a copy of a target that is drawn in parts takes no more than each node has.
     bool suffice(DrawnTarget& target, const DrawTarget& copied_to, std::int32_t x, std::int32_t y);
 
+    /// What a context draws from now on looks these images up, each as often as it is named, and takes no more of them
+    /// than each node has; none: that is over.
+    void allow(ContextId context, std::vector<ClientName> images);
+
     /// Before a command is packed for any node that draws to or with what the source names.
     void before_drawing(const DrawSource& source) {
         if (!drawn_.empty()) end_if_needed(source);
     }
     /// Before content of the object changes.
     void before_object_changes(ClientName object);
-    /// The nodes are told that it is gone.
+    /// Before the nodes are told that it is gone.
     void forget(ClientName object);
     /// Before anything else that may read images of the group.
     void end(const ShareGroup& share);
@@ -71,6 +75,7 @@ private:
     const OpenSurfaces& surfaces_;
     std::vector<Drawn> drawn_;
     std::unordered_map<ContextId, UseStamp> seen_;  ///< what they drew with when it was looked at last
+    std::unordered_map<ContextId, std::vector<ClientName>> allowed_;
 };
 
 }  // namespace wall::client

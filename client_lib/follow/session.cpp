@@ -297,11 +297,11 @@ void ClientSession::before_object_changes(ClientName object) {
 }
 
 void ClientSession::delete_object(ContextId context, ClientName object) {
+    packing([&] { drawn_.forget(object); });
     on_every_node(context, [&](wire::PackBuffer& buffer, Node& node) {
         if (node.object_stamps.erase(object) != 0) glapi::pack::ObjectDelete(buffer, object);
         node.hollow.erase(object);
     });
-    packing([&] { drawn_.forget(object); });
     std::lock_guard lock(mutex_);
     nodes_.kept().forget(object);
 }

@@ -23,7 +23,10 @@ public:
 
     /// Its colours or depths were cleared, or something was copied over all of it.
     void note_redrawn() { redrawn_ = true; }
-    /// In the window's frame of that number all of it was copied there as it is. Whether it is a habit.
+    /// The frame in which it was copied last.
+    std::uint32_t frame() const { return frame_; }
+    /// In the frame of that number all of it was copied there as it is: a window's, or that in which the other object
+    /// was copied last. Whether it is a habit.
     bool note(std::uint32_t frame, const Place& to) {
         const bool anew = redrawn_;
         redrawn_ = false;

@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <thread>
 #include <utility>
 
+#include "client_lib/objects/copied_out.h"
 #include "client_lib/objects/object.h"
 
 namespace wall::client {
@@ -28,6 +30,17 @@ public:
     virtual void note_drawn() = 0;
     /// Stamp of its definition: which images, and how.
     virtual std::uint64_t defined() const { return 0; }
+    /// Whether each of its images is one of its own: no level, layer or view of a larger one. The share group's mutex
+    /// is held.
+    virtual bool has_plain_images() const { return false; }
+
+    /// Whether they may have more pixels for a while without anybody's noticing: one sample each. The same.
+    virtual bool may_be_larger() const { return false; }
+
+    // ---- copies out of it. The thread that draws to it ----
+    CopiedOut copied;
+    /// That thread is the one that asks.
+    bool is_drawn_here() const { return drawn_by_.load(std::memory_order_relaxed) == std::this_thread::get_id(); }
 
     // ---- second step: each node its part (follow/drawn_parts.h). The session's mutex is held ----
     /// Null: every node draws all of it. The thread that draws to it needs no mutex.
@@ -46,8 +59,13 @@ public:
 
 protected:
     ~DrawnTarget() = default;
+    void note_redrawn_here() {
+        copied.note_redrawn();
+        drawn_by_.store(std::this_thread::get_id(), std::memory_order_relaxed);
+    }
 
 private:
+    std::atomic<std::thread::id> drawn_by_;
     std::shared_ptr<const ImageParts> kept_;  ///< also when they have ended: its thread may be looking at them
     std::atomic<const ImageParts*> parts_{nullptr};
     std::atomic<bool> ended_{false};

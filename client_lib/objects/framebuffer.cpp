@@ -175,6 +175,19 @@ bool Framebuffer::has_plain_images() const {
     });
 }
 
+bool Framebuffer::may_be_larger() const {
+    return !resolved_ && std::ranges::all_of(attachments_, [](const Attachment& attachment) {
+        const auto shape = attachment.present() ? shape_of(attachment) : std::optional<ImageShape>();
+        return !shape || shape->samples == 0;
+    });
+}
+
+void Framebuffer::note_redrawn() {
+    note_redrawn_here();
+    for (const Attachment& attachment : attachments_)
+        if (attachment.texture) attachment.texture->drawn_by = weak_from_this();
+}
+
 void Framebuffer::note_drawn() {
     for (const Attachment& attachment : attachments_) {
         if (attachment.renderbuffer) attachment.renderbuffer->note_drawn();

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 
-#include "client_lib/objects/copied_out.h"
 #include "client_lib/objects/drawn_target.h"
 #include "client_lib/objects/renderbuffer.h"
 #include "client_lib/objects/texture.h"
@@ -41,7 +40,7 @@ struct ImageShape {
 /// Nothing: there is no image.
 std::optional<ImageShape> shape_of(const Attachment& attachment);
 
-class Framebuffer final : public Object, public DrawnTarget {
+class Framebuffer final : public Object, public DrawnTarget, public std::enable_shared_from_this<Framebuffer> {
 public:
     /// `es`: the version of OpenGL ES, times ten, which says what may be drawn to; 0: of OpenGL.
     explicit Framebuffer(GLuint own_name, unsigned es = 0) : Object(next_object_id(), own_name), es_(es) {}
@@ -80,11 +79,13 @@ public:
     void for_each_image(const std::function<void(const Object&)>& use) const override;
     void note_drawn() override;
     std::uint64_t defined() const override { return stamp_; }
-    /// Whether each of its images is one of its own: no level, layer or view of a larger one. The share group's mutex
-    /// is held.
-    bool has_plain_images() const;
-
-    CopiedOut copied;  ///< out of it
+    bool has_plain_images() const override;
+    bool may_be_larger() const override;
+    /// Its colours or depths were cleared, or something was copied over all of it. Its textures know who draws them
+    /// from then on. The share group's mutex is held.
+    void note_redrawn();
+    /// Samples were made pixels of there, for which both must have the same size.
+    void note_resolved() { resolved_ = true; }
 
 private:
     std::optional<std::uint32_t> size(std::uint32_t ImageShape::*side) const;
@@ -97,6 +98,7 @@ private:
     std::array<Attachment, glstate::kAttachmentPoints> attachments_;
     std::array<GLenum, glstate::kColorAttachments> draw_buffers_{GL_COLOR_ATTACHMENT0};
     GLenum read_buffer_ = GL_COLOR_ATTACHMENT0;
+    bool resolved_ = false;
     glstate::FramebufferDefaults defaults_;
     std::uint64_t stamp_ = next_stamp();
 };

@@ -207,25 +207,44 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     // In parts of a draw primitives would have other numbers; the camera may be named all the same.
     if (counts_primitives) reflection.position.steps.clear();
     if (!made->touches_memory()) made->follow_position(std::move(reflection.position));
+    made->follow_lookups(std::move(reflection.lookups));
     made->check_samplers();
     return made;
 }
 
-/// One that takes a uniform or an attribute which is not active is not followed.
-void Executable::follow_position(glapi::PositionProgram position) {
+std::optional<glapi::LinkedPosition> Executable::link(glapi::PositionProgram position) const {
     std::vector<std::uint32_t> locations;
     for (const glapi::PositionUniform& wanted : position.uniforms) {
         const auto found = std::ranges::find(uniforms, wanted.name, &Uniform::name);
-        if (found == uniforms.end() || found->location < 0) return;
-        if (wanted.element >= static_cast<std::uint32_t>(found->size)) return;
+        if (found == uniforms.end() || found->location < 0) return std::nullopt;
+        if (wanted.element >= static_cast<std::uint32_t>(found->size)) return std::nullopt;
         locations.push_back(static_cast<std::uint32_t>(found->location) + wanted.element);
     }
-    if (position.known())
-        position_attribute_ = position.attribute == "gl_Vertex" ? 0 : attribute_location_of(position.attribute);
-    position_ = {std::move(position), std::move(locations)};
+    glapi::LinkedPosition linked(std::move(position), std::move(locations));
     for (const Uniform& uniform : uniforms)
         if (uniform.location >= 0)
-            position_.set(static_cast<std::uint32_t>(uniform.location), uniform.type->words(), words_of(uniform));
+            linked.set(static_cast<std::uint32_t>(uniform.location), uniform.type->words(), words_of(uniform));
+    return linked;
+}
+
+/// One that takes a uniform or an attribute which is not active is not followed.
+void Executable::follow_position(glapi::PositionProgram position) {
+    auto linked = link(std::move(position));
+    if (!linked) return;
+    position_ = *std::move(linked);
+    const std::string& attribute = position_.program().attribute;
+    if (position_.program().known())
+        position_attribute_ = attribute == "gl_Vertex" ? 0 : attribute_location_of(attribute);
+}
+
+void Executable::follow_lookups(std::vector<glapi::TextureLookup> lookups) {
+    for (glapi::TextureLookup& lookup : lookups) {
+        const auto sampler = std::ranges::find(uniforms, lookup.sampler, &Uniform::name);
+        if (sampler == uniforms.end() || sampler->location < 0 || sampler->array) continue;
+        if (sampler->type->base != glapi::UniformBase::sampler) continue;
+        if (auto coordinates = link(std::move(lookup.coordinates)))
+            lookups_.push_back({static_cast<std::size_t>(sampler - uniforms.begin()), *std::move(coordinates)});
+    }
 }
 
 GLint Executable::location_of(std::string_view text) const {
@@ -313,7 +332,9 @@ void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const st
     std::memcpy(words_.data() + uniform.first + std::size_t{first} * uniform.type->words(), words.data(),
                 words.size_bytes());
     uniform.stamp = last_change = next_stamp();
-    position_.set(static_cast<std::uint32_t>(uniform.location) + first, uniform.type->words(), words);
+    const auto location = static_cast<std::uint32_t>(uniform.location) + first;
+    position_.set(location, uniform.type->words(), words);
+    for (Lookup& lookup : lookups_) lookup.coordinates.set(location, uniform.type->words(), words);
     if (uniform.type->base != glapi::UniformBase::sampler) return;
     given_.resize(words_.size());
     std::fill_n(given_.begin() + static_cast<std::ptrdiff_t>(uniform.first + first), words.size(), true);

@@ -133,6 +133,13 @@ public:
     GLint position_attribute() const { return position_attribute_; }
     /// How the position is made of it.
     glapi::LinkedPosition& position() { return position_; }
+    /// A sampler that the program looks up at one place only, which is a function of an attribute; of one program, not
+    /// of several.
+    struct Lookup {
+        std::size_t uniform;  ///< the sampler: index in `uniforms`
+        glapi::LinkedPosition coordinates;
+    };
+    std::vector<Lookup>& lookups() { return lookups_; }
 
     /// Texture units that the samplers name, with the texture target of each.
     template <class Use>
@@ -202,7 +209,11 @@ private:
     /// here; those that it never set are taken for unused, as drivers find them to be.
     bool was_given(std::size_t word) const { return word < given_.size() && given_[word]; }
     void for_each_combined(const std::function<void(const Executable&)>& use) const;
+    /// A program for positions or coordinates with the values that the uniforms have; nothing: it takes a uniform that
+    /// is not active.
+    std::optional<glapi::LinkedPosition> link(glapi::PositionProgram position) const;
     void follow_position(glapi::PositionProgram position);
+    void follow_lookups(std::vector<glapi::TextureLookup> lookups);
 
     std::vector<std::uint32_t> words_;
     std::vector<bool> given_;  ///< which of them are samplers that the program has set; shorter: the rest are not
@@ -214,6 +225,7 @@ private:
     std::uint32_t double_attributes_ = 0;
     glapi::LinkedPosition position_;
     GLint position_attribute_ = -1;
+    std::vector<Lookup> lookups_;
 };
 
 struct Program : GlslObject {

@@ -21,6 +21,8 @@
 
 namespace wall::client {
 
+class DrawnTarget;
+
 struct TexBox {
     std::int32_t x = 0, y = 0, z = 0, width = 0, height = 0, depth = 0;
     std::uint64_t stamp = 0;
@@ -117,7 +119,8 @@ struct Texture : Object {
     } view;
     std::uint32_t views = 0;          ///< textures that it is the origin of
     std::uint64_t storage_stamp = 0;  ///< since when nodes keep its levels as one storage, for views; 0: they do not
-    bool orphan = false;              ///< its name is gone; it goes with the last framebuffer that has it
+    std::weak_ptr<DrawnTarget> drawn_by;  ///< that it was last drawn anew as an image of
+    bool orphan = false;                  ///< its name is gone; it goes with the last framebuffer that has it
 
     bool is_default() const { return name == 0; }
     TextureLevel* find_level(unsigned face, GLint level);

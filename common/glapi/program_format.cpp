@@ -197,6 +197,7 @@ std::vector<std::byte> encode(const ProgramReflection& reflection) {
     to.put(reflection.tessellation);
     to.list(reflection.subroutines, [&](const SubroutineStage& stage) { to.put(stage); });
     to.put(reflection.position);
+    to.list(reflection.lookups, [&](const TextureLookup& l) { to.put(l.sampler), to.put(l.coordinates); });
     to.list(reflection.storage_blocks, [&](const ActiveStorageBlock& b) {
         to.put(b.name), to.put(b.bytes), to.put(b.binding), to.put(b.stages), to.put(b.written);
     });
@@ -234,6 +235,7 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     out.tessellation = from.tessellation();
     from.list(out.subroutines, [&] { return from.subroutine_stage(); });
     out.position = from.position();
+    from.list(out.lookups, [&] { return TextureLookup{from.text(), from.position()}; });
     from.list(out.storage_blocks, [&] {
         return ActiveStorageBlock{{from.text(), from.word(), from.word(), from.word()}, from.flag()};
     });

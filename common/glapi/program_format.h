@@ -209,6 +209,14 @@ struct SubroutineStage {
     }
 };
 
+/// A sampler that a fragment shader looks up at one place and nowhere else, where no other shader does: at x and y of
+/// what this gives, whose z and w mean nothing (tileserver/objects/lookup_finder.h).
+struct TextureLookup {
+    std::string sampler;  ///< a uniform that is no array
+    PositionProgram coordinates;
+    bool operator==(const TextureLookup&) const = default;
+};
+
 struct ProgramReflection {
     bool linked = false;
     std::string log;
@@ -221,6 +229,7 @@ struct ProgramReflection {
     TessellationStage tessellation = {};
     std::vector<SubroutineStage> subroutines = {};  ///< of stages that have functions
     PositionProgram position = {};
+    std::vector<TextureLookup> lookups = {};
     std::vector<ActiveStorageBlock> storage_blocks = {};
     std::vector<ActiveCounterBuffer> counter_buffers = {};
     std::array<std::uint32_t, 3> group_size = {};  ///< of the compute shader; 0 throughout: there is none
@@ -250,7 +259,7 @@ struct CompileResult {
 std::vector<std::byte> encode(const ProgramDefinition& definition);
 std::vector<std::byte> encode(const ProgramReflection& reflection);
 std::vector<std::byte> encode(const CompileResult& result);
-/// Nothing if the bytes are not exactly one value, or the steps of a position have no meaning.
+/// Nothing if the bytes are not exactly one value, or the steps of a position or of coordinates have no meaning.
 std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> bytes);
 std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> bytes);
 std::optional<CompileResult> decode_compile_result(std::span<const std::byte> bytes);

@@ -65,6 +65,7 @@ TEST(ProgramFormat, Reflection) {
                                {4, GL_QUADS, GL_EQUAL, GL_CCW, 1},
                                {{GL_VERTEX_SHADER, {"red", "blue"}, {{"tone", 3, true, 0, {1, 0}}}, 3, {5, 0}}},
                                kPosition,
+                               {{"picture", kPosition}},
                                {{{"Sums", 16, 5, 32}, false}},
                                {{1, 4, 2}, {7, 12, 33}},
                                {8, 4, 2},
@@ -83,6 +84,7 @@ TEST(ProgramFormat, Reflection) {
     EXPECT_EQ(out->blocks[0].binding, 3u);
     EXPECT_EQ(out->outputs[0].location, 1);
     EXPECT_EQ(out->captured[0].name, "speed");
+    EXPECT_EQ(out->lookups, in.lookups);
     EXPECT_EQ(out->geometry, in.geometry);
     EXPECT_EQ(out->tessellation, in.tessellation);
     ASSERT_EQ(out->subroutines.size(), 1u);

@@ -70,7 +70,11 @@ std::vector<std::byte> link(const Gl& gl, const glapi::ProgramDefinition& defini
     gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
     gl.DeleteProgram(program);
     glapi::ProgramReflection found{.linked = linked != 0};
-    if (found.linked) found.position = recognise_position(definition).program;
+    if (found.linked) {
+        RecognisedPosition recognised = recognise_position(definition);
+        found.position = std::move(recognised.program);
+        found.lookups = std::move(recognised.lookups);
+    }
     return encode(found);
 }
 

@@ -90,7 +90,10 @@ WindowValues window_values(const LayerGeometry& g, const glstate::State& state) 
             if (const auto* own = own_value<el::scissor_rest>(state, i)) out.scissors[i] = scissor_of(g, *own);
         }
     out.scissor_enabled = el::scissor_enabled::ref(state);
-    if (g.part) keep_to(*g.part, out);
+    if (g.part) {
+        const WindowValues::IntBox part = layer_box(g, {g.part->x, g.part->y, g.part->width, g.part->height});
+        keep_to({part.x, part.y, part.width, part.height}, out);
+    }
     out.stipple = rotate_stipple(el::polygon_stipple::ref(state), g.offset_x(), g.offset_y());
     const auto& zoom = el::pixel_zoom::ref(state);
     out.pixel_zoom = {static_cast<float>(zoom.x * g.scale_x()), static_cast<float>(zoom.y * g.scale_y())};

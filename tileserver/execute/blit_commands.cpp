@@ -19,8 +19,10 @@ void BlitCommands::Blit(std::int32_t from_x0, std::int32_t from_y0, std::int32_t
     if (from == nullptr) return;
     const LayerGeometry& g = block_.target->geometry();
     const LayerEdge left = layer_edge(g, to_x0, to_y0), right = layer_edge(g, to_x1, to_y1);
-    execution_.gl.BlitNamedFramebuffer(from->framebuffer(), block_.target->framebuffer(), from_x0, from_y0, from_x1,
-                                       from_y1, left.x, left.y, right.x, right.y, mask, filter);
+    const LayerGeometry& f = from->geometry();
+    const LayerEdge from_left = layer_edge(f, from_x0, from_y0), from_right = layer_edge(f, from_x1, from_y1);
+    execution_.gl.BlitNamedFramebuffer(from->framebuffer(), block_.target->framebuffer(), from_left.x, from_left.y,
+                                       from_right.x, from_right.y, left.x, left.y, right.x, right.y, mask, filter);
     // Updating may have bound others.
     execution_.node.driver.forget_target();
 }

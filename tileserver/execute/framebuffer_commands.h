@@ -19,12 +19,11 @@ public:
 
     void Framebuffer(ClientName framebuffer, std::span<const std::byte> definition);
     void BindTargets(ClientName draw, ClientName read, std::uint32_t counts);
-    void TargetPart(ClientName framebuffer, std::int32_t x, std::int32_t y, std::uint32_t width, std::uint32_t height);
+    void TargetPart(ClientName framebuffer, std::int32_t x, std::int32_t y, std::uint32_t width, std::uint32_t height,
+                    std::uint32_t images_width, std::uint32_t images_height);
     void TargetWhole(ClientName framebuffer);
 
 private:
-    void draw_part(ClientName framebuffer, const std::optional<geom::Rect>& part);
-
     Execution& execution_;
 };
 

@@ -79,9 +79,8 @@ void ProgramCommands::ProgramLink(RequestId request, ClientName program, std::sp
     hold(execution_.node.trials->program(definition), [=, this](const CompileTrial& trial) {
         if (trial.outcome() == Outcome::unavailable) return link(request, program, definition);
         if (trial.outcome() == Outcome::done) {
-            const auto found = glapi::decode_reflection(trial.answer());
-            const auto position = found ? found->position : glapi::PositionProgram{};
-            return link(request, program, definition, &position);
+            const auto found = glapi::decode_reflection(trial.answer()).value_or(glapi::ProgramReflection{});
+            return link(request, program, definition, &found);
         }
         const std::string reason = given_up();
         if (request) execution_.output.reply(request, encode(glapi::ProgramReflection{false, reason}));
@@ -89,7 +88,7 @@ void ProgramCommands::ProgramLink(RequestId request, ClientName program, std::sp
 }
 
 void ProgramCommands::link(RequestId request, ClientName program, std::span<const std::byte> definition,
-                           const glapi::PositionProgram* recognised) {
+                           const glapi::ProgramReflection* recognised) {
     const auto made = execution_.session.objects.make<Program>(program, execution_.node.driver);
     if (!made) return execution_.refuse(made.error().message);
     auto answer = (*made)->link(definition, static_cast<bool>(request), recognised);

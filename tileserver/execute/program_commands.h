@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "common/glapi/position_program.h"
+#include "common/glapi/program_format.h"
 #include "tileserver/compile/compile_trials.h"
 #include "tileserver/execute/execution.h"
 
@@ -51,9 +51,9 @@ private:
     /// The answer about one that was given up.
     std::vector<std::byte> given_up_answer(GLenum type);
     void compile(RequestId request, GLenum type, std::span<const std::byte> source);
-    /// `recognised`: what is known of the position from a trial; null: nothing.
+    /// `recognised`: what is known of the shaders from a trial; null: nothing.
     void link(RequestId request, ClientName program, std::span<const std::byte> definition,
-              const glapi::PositionProgram* recognised = nullptr);
+              const glapi::ProgramReflection* recognised = nullptr);
     /// What the program is told of a shader that was given up.
     std::string given_up();
 

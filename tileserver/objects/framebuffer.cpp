@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "tileserver/objects/driver_framebuffer.h"
 #include "tileserver/objects/renderbuffer.h"
 #include "tileserver/objects/texture.h"
 
@@ -37,11 +38,8 @@ Result<void> Framebuffer::update(const ObjectTable& objects, SharedContents& sha
         renderbuffers_ == objects.version(ObjectKind::renderbuffer))
         return {};
     detach_all();
-    for (const auto& attachment : definition_.attachments)
-        if (auto attached = attach(attachment, objects, shared); !attached) return attached;
-    gl_.NamedFramebufferDrawBuffers(framebuffer_, static_cast<GLsizei>(definition_.draw_buffers.size()),
-                                    definition_.draw_buffers.data());
-    gl_.NamedFramebufferReadBuffer(framebuffer_, definition_.read_buffer);
+    if (auto attached = attach_all(framebuffer_, objects, shared); !attached) return attached;
+    set_buffers();
     set_defaults();
     complete_ = gl_.CheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     GLint depth = GL_NONE;
@@ -54,6 +52,12 @@ Result<void> Framebuffer::update(const ObjectTable& objects, SharedContents& sha
     textures_ = objects.version(ObjectKind::texture);
     renderbuffers_ = objects.version(ObjectKind::renderbuffer);
     return {};
+}
+
+void Framebuffer::set_buffers() {
+    gl_.NamedFramebufferDrawBuffers(framebuffer_, static_cast<GLsizei>(definition_.draw_buffers.size()),
+                                    definition_.draw_buffers.data());
+    gl_.NamedFramebufferReadBuffer(framebuffer_, definition_.read_buffer);
 }
 
 void Framebuffer::set_defaults() {
@@ -75,13 +79,13 @@ void Framebuffer::detach_all() {
 }
 
 /// One that is gone leaves its point empty.
-Result<void> Framebuffer::attach(const glstate::FramebufferAttachment& attachment, const ObjectTable& objects,
-                                 SharedContents& shared) {
+Result<void> Framebuffer::attach(GLuint to, const glstate::FramebufferAttachment& attachment,
+                                 const ObjectTable& objects, SharedContents& shared) {
     if (attachment.target == GL_RENDERBUFFER) {
         const auto renderbuffer = objects.look_up<Renderbuffer>(attachment.object);
         if (!renderbuffer) return tl::unexpected(renderbuffer.error());
         if (*renderbuffer != nullptr)
-            gl_.NamedFramebufferRenderbuffer(framebuffer_, attachment.point, GL_RENDERBUFFER, (*renderbuffer)->name());
+            gl_.NamedFramebufferRenderbuffer(to, attachment.point, GL_RENDERBUFFER, (*renderbuffer)->name());
         return {};
     }
     const auto found = objects.look_up<Texture>(attachment.object);
@@ -93,15 +97,21 @@ Result<void> Framebuffer::attach(const glstate::FramebufferAttachment& attachmen
     const auto& info = glapi::info_of(*target);
     const GLuint name = texture->content().name();
     if (attachment.layer == glstate::kAllLayers) {
-        gl_.NamedFramebufferTexture(framebuffer_, attachment.point, name, attachment.level);
+        gl_.NamedFramebufferTexture(to, attachment.point, name, attachment.level);
     } else if (info.first_face != 0) {  // by its name: as a layer only where all faces are there
-        gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+        gl_.BindFramebuffer(GL_FRAMEBUFFER, to);
         gl_.FramebufferTexture2D(GL_FRAMEBUFFER, attachment.point, attachment.target, name, attachment.level);
     } else if (is_3d(*target) || info.layers != 0) {
-        gl_.NamedFramebufferTextureLayer(framebuffer_, attachment.point, name, attachment.level, attachment.layer);
+        gl_.NamedFramebufferTextureLayer(to, attachment.point, name, attachment.level, attachment.layer);
     } else {
-        gl_.NamedFramebufferTexture(framebuffer_, attachment.point, name, attachment.level);
+        gl_.NamedFramebufferTexture(to, attachment.point, name, attachment.level);
     }
+    return {};
+}
+
+Result<void> Framebuffer::attach_all(GLuint to, const ObjectTable& objects, SharedContents& shared) {
+    for (const auto& attachment : definition_.attachments)
+        if (auto attached = attach(to, attachment, objects, shared); !attached) return attached;
     return {};
 }
 
@@ -135,9 +145,77 @@ void Framebuffer::find_size() {
         size = {static_cast<GLint>(definition_.defaults.width), static_cast<GLint>(definition_.defaults.height)};
     const bool any = size[0] != std::numeric_limits<GLint>::max();
     geometry_ = any ? plain_geometry(size[0], size[1]) : LayerGeometry{};
+    if (own_) geometry_.window_width = own_->window_width, geometry_.window_height = own_->window_height;
     geometry_.part = part_;
     complete_ = complete_ && any && size[0] > 0 && size[1] > 0;
     driver_.drain_errors();
+}
+
+// ---- larger images ----
+
+/// Calls `use(image)` with each texture and renderbuffer, once; false as soon as it says so, or where one is gone.
+template <class Use>
+bool Framebuffer::all_images(const ObjectTable& objects, Use&& use) {
+    std::vector<ClientName> seen;
+    return std::ranges::all_of(definition_.attachments, [&](const glstate::FramebufferAttachment& attachment) {
+        if (std::ranges::find(seen, attachment.object) != seen.end()) return true;
+        seen.push_back(attachment.object);
+        if (attachment.target == GL_RENDERBUFFER) {
+            const auto found = objects.look_up<Renderbuffer>(attachment.object);
+            return found && *found != nullptr && use(**found);
+        }
+        const auto found = objects.look_up<Texture>(attachment.object);
+        return found && *found != nullptr && use(**found);
+    });
+}
+
+/// From those of another framebuffer with as many, which are of the size that `as` says.
+void Framebuffer::copy_images(GLuint from, const LayerGeometry& as) {
+    driver_.disable_scissor();
+    const bool smooth = as.area.width > geometry_.area.width || as.area.height > geometry_.area.height;
+    for (const auto& attachment : definition_.attachments) {
+        const GLbitfield buffers = buffers_at(attachment.point);
+        GLint kind = GL_NONE;
+        if (buffers == GL_COLOR_BUFFER_BIT) {
+            gl_.NamedFramebufferReadBuffer(from, attachment.point);
+            gl_.NamedFramebufferDrawBuffers(framebuffer_, 1, &attachment.point);
+            gl_.GetNamedFramebufferAttachmentParameteriv(from, attachment.point,
+                                                         GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE, &kind);
+        }
+        const bool whole_numbers = kind == GL_INT || kind == GL_UNSIGNED_INT;
+        const bool linear = smooth && buffers == GL_COLOR_BUFFER_BIT && !whole_numbers;
+        gl_.BlitNamedFramebuffer(from, framebuffer_, 0, 0, as.area.width, as.area.height, 0, 0, geometry_.area.width,
+                                 geometry_.area.height, buffers, linear ? GL_LINEAR : GL_NEAREST);
+    }
+    set_buffers();
+    driver_.drain_errors();
+    driver_.forget_target();
+}
+
+void Framebuffer::enlarge(const ObjectTable& objects, SharedContents& shared, std::int32_t width, std::int32_t height) {
+    if (own_ || !update(objects, shared) || !complete_) return;
+    const DriverFramebuffer before(gl_);
+    if (!attach_all(before.name(), objects, shared)) return;
+    own_ = geometry_;
+    if (all_images(objects, [&](auto& image) { return image.enlarge(width, height); }) && update(objects, shared) &&
+        complete_)
+        return copy_images(before.name(), *own_);
+    restore_images(objects);
+}
+
+void Framebuffer::restore_images(const ObjectTable& objects) {
+    all_images(objects, [](auto& image) { return image.restore(), true; });
+    own_.reset();
+}
+
+// What it was attached to keeps an image that is deleted (OpenGL 4.6, 5.1.3).
+void Framebuffer::restore(const ObjectTable& objects, SharedContents& shared) {
+    if (!own_) return;
+    const DriverFramebuffer larger(gl_);
+    const LayerGeometry as = geometry_;
+    const bool whole = attach_all(larger.name(), objects, shared).has_value();
+    restore_images(objects);
+    if (whole && update(objects, shared) && complete_) copy_images(larger.name(), as);
 }
 
 // Its draw buffers are its own, not the window's.

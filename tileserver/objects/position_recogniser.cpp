@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "tileserver/objects/lookup_finder.h"
 #include "tileserver/objects/position_builder.h"
 #include "tileserver/objects/shader_tree.h"
 #include "tileserver/objects/shader_variables.h"
@@ -57,6 +58,15 @@ public:
         const auto why = builder_.finish(variables_.position(), out.program);
         if (why) out.reason = describe(*why);
         return out;
+    }
+    /// After run(). Not known: it is no function of one attribute.
+    glapi::PositionProgram coordinates(const FoundLookup& lookup) {
+        const PositionValue value = variables_.handed_on(lookup.place);
+        glapi::PositionProgram out;
+        if (value.size() < 2) return out;
+        PositionValue whole(1, 4);
+        whole[0] = value[0], whole[1] = value[1], whole[2] = number(0)[0], whole[3] = number(1)[0];
+        return builder_.finish(whole, out) ? glapi::PositionProgram{} : out;
     }
 
 private:
@@ -455,19 +465,27 @@ private:
 
 RecognisedPosition recognise_position(const glapi::ProgramDefinition& definition) {
     if (!definition.feedback.names.empty()) return {{}, "vertices are captured"};
-    std::vector<const std::string*> sources;
+    std::vector<const std::string*> sources, fragment_shaders;
     std::size_t bytes = 0;
     for (const glapi::ShaderSource& shader : definition.shaders) {
         if (shader.type == GL_VERTEX_SHADER) sources.push_back(&shader.source), bytes += shader.source.size();
-        else if (shader.type != GL_FRAGMENT_SHADER) return {{}, "another stage moves vertices"};
+        else if (shader.type == GL_FRAGMENT_SHADER) fragment_shaders.push_back(&shader.source);
+        else return {{}, "another stage moves vertices"};
     }
     if (sources.empty()) return {{}, "no vertex shader"};
     if (bytes > kMostShaderBytes) return {{}, describe(WhyUnknown::too_long)};
-    static const bool ready = glslang::InitializeProcess();  // for good: it keeps the tables of each version
-    if (!ready) return {{}, "glslang does not start"};
-    const ParsedShaders parsed(sources);
+    const ParsedShaders parsed(EShLangVertex, sources);
     if (parsed.tree() == nullptr) return {{}, "not parsed"};
-    return Recogniser(*parsed.tree(), parsed.tree()->getProfile() != EEsProfile).run();
+    Recogniser recogniser(*parsed.tree(), parsed.any_precision());
+    RecognisedPosition out = recogniser.run();
+    if (!out.program.known()) return out;
+    const std::set<std::string> used_before = used_samplers(*parsed.tree());
+    for (const FoundLookup& lookup : find_lookups(fragment_shaders)) {
+        if (used_before.contains(lookup.sampler)) continue;
+        if (auto coordinates = recogniser.coordinates(lookup); coordinates.known())
+            out.lookups.push_back({lookup.sampler, std::move(coordinates)});
+    }
+    return out;
 }
 
 }  // namespace wall::tileserver

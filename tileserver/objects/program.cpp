@@ -209,7 +209,7 @@ void Program::follow_position(glapi::PositionProgram position, const std::vector
 }
 
 Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, bool wants_reflection,
-                                             const glapi::PositionProgram* recognised) {
+                                             const glapi::ProgramReflection* recognised) {
     const auto definition = read_definition(bytes);
     if (!definition) return tl::unexpected(definition.error());
     const BuiltProgram built = build_program(driver_.gl(), *definition);
@@ -226,7 +226,14 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     // Once for all nodes: the others are told by the definition.
     glapi::PositionProgram position = definition->position;
     if (wants_reflection) {
-        position = recognised != nullptr ? *recognised : recognise_position(*definition).program;
+        if (recognised != nullptr) {
+            position = recognised->position;
+            reflection.lookups = recognised->lookups;
+        } else {
+            RecognisedPosition found = recognise_position(*definition);
+            position = std::move(found.program);
+            reflection.lookups = std::move(found.lookups);
+        }
         glapi::name_camera(position, definition->cameras, reflection.uniforms);
         reflection.position = position;
     }

@@ -29,7 +29,7 @@ public:
     /// it the position as it was `recognised`; null: it is recognised here. An error: bad bytes, or more memory than a
     /// session may have.
     Result<std::vector<std::byte>> link(std::span<const std::byte> definition, bool reflect,
-                                        const glapi::PositionProgram* recognised = nullptr);
+                                        const glapi::ProgramReflection* recognised = nullptr);
     Result<void> set_uniform(std::uint32_t location, GLenum type, std::uint32_t count,
                              std::span<const std::byte> values);
     /// From now on a block takes its uniforms from what is bound there. An error: no such block, no such place.

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "tileserver/objects/driver_framebuffer.h"
 
 namespace wall::tileserver {
 
@@ -11,9 +14,41 @@ Renderbuffer::Renderbuffer(ObjectAccount& account, Driver& driver)
     gl_.CreateRenderbuffers(1, &name_);
 }
 
-Renderbuffer::~Renderbuffer() { gl_.DeleteRenderbuffers(1, &name_); }
+Renderbuffer::~Renderbuffer() {
+    restore();
+    gl_.DeleteRenderbuffers(1, &name_);
+}
+
+bool Renderbuffer::enlarge(std::int32_t width, std::int32_t height) {
+    const std::uint64_t bytes = kSampleBytes * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    if (kept_ != 0 || samples_ != 0 || width_ == 0 || !affords(bytes, 0)) return false;
+    GLuint larger = 0;
+    driver_.drain_errors();
+    gl_.CreateRenderbuffers(1, &larger);
+    gl_.NamedRenderbufferStorage(larger, internal_format_, width, height);
+    kept_ = std::exchange(name_, larger);
+    larger_bytes_ = bytes;
+    renamed();
+    if (driver_.drain_errors() == 0 && has_content(own_bytes() + larger_bytes_)) return true;
+    restore();
+    return false;
+}
+
+void Renderbuffer::restore() {
+    if (kept_ == 0) return;
+    gl_.DeleteRenderbuffers(1, &name_);
+    name_ = std::exchange(kept_, 0);
+    renamed();
+    static_cast<void>(has_content(own_bytes()));  // less than before
+}
+
+std::uint64_t Renderbuffer::own_bytes() const {
+    return kSampleBytes * std::max(samples_, 1u) * static_cast<std::uint64_t>(width_) *
+           static_cast<std::uint64_t>(height_);
+}
 
 bool Renderbuffer::define(std::uint32_t samples, GLenum internal_format, std::int32_t width, std::int32_t height) {
+    restore();
     driver_.drain_errors();
     gl_.NamedRenderbufferStorageMultisample(name_, static_cast<GLsizei>(samples), internal_format, width, height);
     const bool stored = driver_.drain_errors() == 0;
@@ -23,8 +58,7 @@ bool Renderbuffer::define(std::uint32_t samples, GLenum internal_format, std::in
     internal_format_ = internal_format;
     renamed();  // framebuffers that it belongs to have another size
     if (width_ != 0 && height_ != 0) clear();
-    return has_content(kSampleBytes * std::max(samples, 1u) * static_cast<std::uint64_t>(width_) *
-                       static_cast<std::uint64_t>(height_));
+    return has_content(own_bytes());
 }
 
 GLenum Renderbuffer::point() const {
@@ -35,34 +69,8 @@ GLenum Renderbuffer::point() const {
     return stencil != 0 ? GL_STENCIL_ATTACHMENT : GL_COLOR_ATTACHMENT0;
 }
 
-namespace {
-
-/// A framebuffer of the driver for one image.
-class OneImage {
-public:
-    explicit OneImage(const Gl& gl) : gl_(gl) { gl_.CreateFramebuffers(1, &name_); }
-    ~OneImage() { gl_.DeleteFramebuffers(1, &name_); }
-    OneImage(const OneImage&) = delete;
-    GLuint name() const { return name_; }
-
-private:
-    const Gl& gl_;
-    GLuint name_ = 0;
-};
-
-GLbitfield buffers_at(GLenum point) {
-    switch (point) {
-        case GL_DEPTH_ATTACHMENT: return GL_DEPTH_BUFFER_BIT;
-        case GL_STENCIL_ATTACHMENT: return GL_STENCIL_BUFFER_BIT;
-        case GL_DEPTH_STENCIL_ATTACHMENT: return GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
-        default: return GL_COLOR_BUFFER_BIT;
-    }
-}
-
-}  // namespace
-
 void Renderbuffer::read(std::int32_t first, std::int32_t rows, GLenum format, GLenum type, std::span<std::byte> to) {
-    const OneImage framebuffer(gl_);
+    const DriverFramebuffer framebuffer(gl_);
     gl_.NamedFramebufferRenderbuffer(framebuffer.name(), point(), GL_RENDERBUFFER, name_);
     driver_.forget_target();
     driver_.neutral_pixel_transfer();
@@ -74,7 +82,7 @@ void Renderbuffer::read(std::int32_t first, std::int32_t rows, GLenum format, GL
 // By way of a texture of the same format, which takes pixels.
 void Renderbuffer::write(std::int32_t first, std::int32_t rows, GLenum format, GLenum type,
                          std::span<const std::byte> from) {
-    const OneImage source(gl_), target(gl_);
+    const DriverFramebuffer source(gl_), target(gl_);
     GLuint texture = 0;
     gl_.CreateTextures(GL_TEXTURE_2D, 1, &texture);
     driver_.neutral_pixel_transfer();
@@ -92,7 +100,7 @@ void Renderbuffer::write(std::int32_t first, std::int32_t rows, GLenum format, G
 
 /// The driver's memory may have been another session's.
 void Renderbuffer::clear() {
-    const OneImage framebuffer(gl_);
+    const DriverFramebuffer framebuffer(gl_);
     const GLuint to = framebuffer.name();
     const GLbitfield buffers = buffers_at(point());
     GLint kind = GL_NONE;

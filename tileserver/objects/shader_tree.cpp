@@ -38,13 +38,43 @@ bool is_shallow(std::string_view expanded) {
     return expanded.size() <= kMostExpandedBytes;
 }
 
+/// The word of a directive, such as `ifdef`; empty: the line has none.
+std::string_view directive_of(std::string_view line) {
+    const std::size_t hash = line.find_first_not_of(" \t\r");
+    if (hash == line.npos || line[hash] != '#') return {};
+    const std::string_view rest = line.substr(std::min(line.find_first_not_of(" \t", hash + 1), line.size()));
+    return rest.substr(0, static_cast<std::size_t>(std::ranges::find_if_not(rest, is_name) - rest.begin()));
+}
+
+/// Whether it begins with a condition of which nothing follows but what is said to be wanted: how many bytes that is,
+/// or 0.
+std::size_t idle_condition(std::string_view source) {
+    if (!directive_of(source.substr(0, source.find('\n'))).starts_with("if")) return 0;
+    int within = 0;
+    for (std::size_t begin = 0; begin < source.size();) {
+        const std::size_t end = std::min(source.find('\n', begin), source.size());
+        const std::string_view line = source.substr(begin, end - begin), word = directive_of(line);
+        const bool blank = line.find_first_not_of(" \t\r") == line.npos;
+        if (line.ends_with('\\') || line.find("/*") != line.npos) return 0;
+        if (word.starts_with("if")) ++within;
+        else if (word == "endif") --within;
+        else if (!blank && word != "extension" && word != "else") return 0;
+        begin = end + 1;
+        if (within == 0) return std::min(begin, source.size());
+    }
+    return 0;
+}
+
 /// Which extensions there are is the driver's affair, so that conditions on them may come out otherwise here. What is
 /// said to be wanted (`#extension`) is no condition.
 bool asks_for_extensions(std::string_view source) {
     if (source.find("##") != source.npos) return true;  // could make any name
     bool directive = false;                             // of `#extension`
     for (std::size_t i = 0; i < source.size(); ++i) {
+        if (i == 0 || source[i - 1] == '\n')
+            while (const std::size_t idle = idle_condition(source.substr(i))) i += idle;
         const std::string_view rest = source.substr(i);
+        if (rest.empty()) return false;
         if (rest[0] == '\n') directive = false;
         if (rest[0] == '#')
             directive = rest.substr(std::min(rest.find_first_not_of(" \t", 1), rest.size())).starts_with("extension");
@@ -68,10 +98,15 @@ bool is_shallow(glslang::TShader& shader) {
 
 }  // namespace
 
-ParsedShaders::ParsedShaders(const std::vector<const std::string*>& sources) {
+ParsedShaders::ParsedShaders(EShLanguage stage, const std::vector<const std::string*>& sources) {
+    static const bool ready = glslang::InitializeProcess();
+    if (ready) parse(stage, sources);
+}
+
+void ParsedShaders::parse(EShLanguage stage, const std::vector<const std::string*>& sources) {
     for (const std::string* source : sources) {
         if (asks_for_extensions(*source)) return;
-        auto& shader = *shaders_.emplace_back(std::make_unique<glslang::TShader>(EShLangVertex));
+        auto& shader = *shaders_.emplace_back(std::make_unique<glslang::TShader>(stage));
         const char* text = source->data();
         const auto length = static_cast<int>(source->size());
         shader.setStringsWithLengths(&text, &length, 1);
@@ -79,7 +114,7 @@ ParsedShaders::ParsedShaders(const std::vector<const std::string*>& sources) {
         if (!shader.parse(GetDefaultResources(), kDefaultVersion, false, EShMsgRelaxedErrors)) return;
         program_.addShader(&shader);
     }
-    if (program_.link(EShMsgRelaxedErrors)) tree_ = program_.getIntermediate(EShLangVertex);
+    if (program_.link(EShMsgRelaxedErrors)) tree_ = program_.getIntermediate(stage);
 }
 
 // ---- types ----

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vertex shaders as glslang parses them, and what its tree says of types and operators, for position_recogniser.h.
+// Shaders as glslang parses them, and what its tree says of types and operators, for position_recogniser.h and
+// lookup_finder.h.
 // Any thread; a tree stays while its ParsedShaders does.
 #pragma once
 
@@ -16,17 +17,22 @@
 
 namespace wall::tileserver {
 
-/// Longer ones are not parsed, all vertex shaders of a program together.
+/// Longer ones are not parsed, all shaders of a stage together.
 inline constexpr std::size_t kMostShaderBytes = std::size_t{128} << 10;
 
-/// A program's vertex shaders, parsed and linked.
+/// The shaders of one stage of a program, parsed and linked. glslang is set up at the first use and keeps its tables
+/// for as long as the process runs.
 class ParsedShaders {
 public:
-    explicit ParsedShaders(const std::vector<const std::string*>& sources);
+    ParsedShaders(EShLanguage stage, const std::vector<const std::string*>& sources);
     /// Null: they were not parsed, or are deeper than what may be gone through.
     glslang::TIntermediate* tree() const { return tree_; }
+    /// Qualifiers of precision have no meaning.
+    bool any_precision() const { return tree_->getProfile() != EEsProfile; }
 
 private:
+    void parse(EShLanguage stage, const std::vector<const std::string*>& sources);
+
     std::vector<std::unique_ptr<glslang::TShader>> shaders_;
     glslang::TProgram program_;  // goes before its shaders
     glslang::TIntermediate* tree_ = nullptr;

@@ -60,7 +60,22 @@ void Place::enter(glslang::TIntermBinary& part) {
     set_type(part.getType());
 }
 
+std::optional<HandedOn> HandedOn::of(const Place& place, glslang::TStorageQualifier storage) {
+    const glslang::TType& root = place.root->getType();
+    const auto& qualifier = root.getQualifier();
+    if (!place.clear || qualifier.storage != storage || root.getBasicType() == glslang::EbtBlock) return std::nullopt;
+    HandedOn out{place.full_path()};
+    if (qualifier.hasLocation()) out.location = qualifier.layoutLocation;
+    return qualifier.hasComponent() ? std::nullopt : std::optional(out);
+}
+
 // ---- reading ----
+
+PositionValue ShaderVariables::handed_on(const HandedOn& which) const {
+    const auto found = handed_on_.find(which);
+    const auto value = found == handed_on_.end() ? values_.end() : values_.find(found->second);
+    return value == values_.end() ? PositionValue() : value->second;
+}
 
 PositionValue ShaderVariables::position() const {
     const auto found = values_.find(kPosition);
@@ -142,6 +157,7 @@ void ShaderVariables::forget(Place place) {
 void ShaderVariables::write(const Place& place, const PositionValue& value) {
     if (place.type->isStruct() || place.type->isArray()) erase_parts(place.variable);
     if (!is_plain_float(*place.type)) return;
+    if (const auto varying = HandedOn::of(place, glslang::EvqVaryingOut)) handed_on_[*varying] = place.variable;
     PositionValue whole = unknown_of(*place.type, WhyUnknown::depends_on_flow);
     if (place.clear) {
         const auto found = values_.find(place.variable);

@@ -2,8 +2,10 @@
 // What a shader's variables hold while it is gone through (position_recogniser.h), gl_Position among them.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,11 +31,22 @@ struct Place {
     Place() = default;
     /// A part of it from now on.
     void narrow(glslang::TIntermBinary& part);
+    /// `path` with the element.
+    std::string full_path() const { return indexed ? path + "[" + std::to_string(element) + "]" : path; }
 
 private:
     void select(glslang::TIntermBinary& part);
     void enter(glslang::TIntermBinary& part);
     void set_type(const glslang::TType& of);
+};
+
+/// A variable, or a part of one, from stage to stage.
+struct HandedOn {
+    std::string name;                       ///< Place::full_path()
+    std::optional<unsigned> location = {};  ///< if the shader gives it one
+    auto operator<=>(const HandedOn&) const = default;
+    /// Nothing: it is no such one, or in a block.
+    static std::optional<HandedOn> of(const Place& place, glslang::TStorageQualifier storage);
 };
 
 class ShaderVariables {
@@ -47,6 +60,8 @@ public:
     void write(const Place& place, const PositionValue& value);
     void forget(Place place);
     PositionValue position() const;
+    /// What the shader hands on to the next stage by that name; nothing is known of it: no components.
+    PositionValue handed_on(const HandedOn& which) const;
 
     using Values = std::map<std::string, PositionValue>;
     const Values& values() const { return values_; }
@@ -68,6 +83,7 @@ private:
     PositionBuilder& builder_;
     const bool any_precision_;
     Values values_;
+    std::map<HandedOn, std::string> handed_on_;  ///< that were written: the variable of each
 };
 
 }  // namespace wall::tileserver

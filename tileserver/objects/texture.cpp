@@ -20,6 +20,26 @@ bool Texture::own(SharedContents& shared) {
     return true;
 }
 
+bool Texture::enlarge(std::int32_t width, std::int32_t height) {
+    constexpr std::uint64_t kTexelBytes = 4;  // by estimate
+    const std::uint64_t bytes = kTexelBytes * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    if (kept_ || !affords(bytes, 0)) return false;
+    auto larger = content_->sized(width, height);
+    if (!larger) return false;
+    kept_ = std::exchange(content_, std::move(larger));
+    renamed();
+    if (has_content(kept_->bytes() + content_->bytes())) return true;
+    restore();
+    return false;
+}
+
+void Texture::restore() {
+    if (!kept_) return;
+    content_ = std::exchange(kept_, nullptr);
+    renamed();
+    static_cast<void>(has_content(content_->bytes()));  // less than before
+}
+
 bool Texture::store(const TextureContent::Storage& storage) {
     content_->store(storage);
     renamed();

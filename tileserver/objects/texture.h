@@ -36,6 +36,11 @@ public:
     [[nodiscard]] bool store(const TextureContent::Storage& storage);
     /// It is that part of a texture that has storage, from now on. False: as adopt().
     [[nodiscard]] bool show(Driver& driver, const Texture& origin, const TextureContent::Part& part);
+    /// It has another content with an image of that size from now on, and anything in it, until it is restored. False:
+    /// TextureContent::sized() gives none, or more memory than a session may have.
+    [[nodiscard]] bool enlarge(std::int32_t width, std::int32_t height);
+    /// It is as it was before.
+    void restore();
     /// Whether the session may have `bytes` for that image, instead of what it has for it now.
     bool affords_image(GLenum image_target, std::int32_t level, std::uint64_t bytes) const;
     /// Notes what the driver has of one image after a definition (TextureContent::note_image). False: as adopt().
@@ -52,6 +57,7 @@ public:
 
 private:
     std::shared_ptr<TextureContent> content_;  // never null
+    std::shared_ptr<TextureContent> kept_;     // while it is enlarged: as it was before
 };
 
 }  // namespace wall::tileserver

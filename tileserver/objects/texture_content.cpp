@@ -102,6 +102,24 @@ std::shared_ptr<TextureContent> TextureContent::copy() const {
     return made;
 }
 
+std::shared_ptr<TextureContent> TextureContent::sized(GLsizei width, GLsizei height) const {
+    if (part_ || images_.size() != 1) return nullptr;
+    const auto& [where, image] = *images_.begin();
+    const auto& [image_target, level] = where;
+    if (level != 0 || image.format.compressed) return nullptr;
+    auto made = std::make_shared<TextureContent>(driver_, target_);
+    made->parameters_ = parameters_;
+    made->whole_border_ = whole_border_;
+    driver_.neutral_pixel_transfer();
+    driver_.bind_texture_to_edit(target_, made->name_);
+    set_parameters(made->name_);
+    driver_.drain_errors();
+    upload_image(driver_.gl(), target_, image_target, level, image.format, {width, height, 1}, nullptr);
+    if (driver_.drain_errors() != 0) return nullptr;
+    made->note_image(image_target, level, &image.format);
+    return made;
+}
+
 void TextureContent::set_parameters(GLuint name) const {
     for (const auto& [pname, value] : parameters_) driver_.gl().TextureParameterfv(name, pname, value.data());
     if (whole_border_) driver_.gl().TextureParameterIiv(name, GL_TEXTURE_BORDER_COLOR, whole_border_->data());

@@ -73,6 +73,9 @@ public:
         return part_ && origin_ == origin.name_ && *part_ == part;
     }
 
+    /// The same texture with an image of that size, and anything in it. Null: it has not just one image of the format
+    /// that it was defined with, or the driver refuses it.
+    std::shared_ptr<TextureContent> sized(GLsizei width, GLsizei height) const;
     /// The same texture again, copied by the driver.
     std::shared_ptr<TextureContent> copy() const;
 

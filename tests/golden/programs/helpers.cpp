@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "tests/golden/programs/scene.h"
 
@@ -111,6 +112,24 @@ void checker_texture(GLuint name, int size) {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, size, size, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+}
+
+GLuint linked_program(const char* vertex, const char* fragment, std::initializer_list<const char*> attributes) {
+    const GLuint program = glCreateProgram();
+    for (const auto& [type, source] : {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
+        const GLuint shader = glCreateShader(static_cast<GLenum>(type));
+        glShaderSource(shader, 1, &source, nullptr);
+        glCompileShader(shader);
+        glAttachShader(program, shader);
+        glDeleteShader(shader);
+    }
+    GLuint location = 0;
+    for (const char* attribute : attributes) glBindAttribLocation(program, location++, attribute);
+    glLinkProgram(program);
+    GLint status = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &status);
+    if (!status) say("does not link");
+    return program;
 }
 
 }  // namespace golden

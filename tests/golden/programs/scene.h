@@ -7,6 +7,7 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,8 @@ unsigned random_bits();  ///< a fixed sequence, started anew for every frame
 float random_unit();     ///< 0..1
 std::vector<GLubyte> random_image(std::size_t bytes);
 void restart_random();
+/// Attributes have the locations 0, 1 ... in that order. Says if it does not link.
+GLuint linked_program(const char* vertex, const char* fragment, std::initializer_list<const char*> attributes);
 void checker_texture(GLuint name, int size);  ///< RGBA, coloured checks with a varying alpha; nearest, repeat
 
 #define SCENE(NAME, FRAMES, ...)                                                                 \

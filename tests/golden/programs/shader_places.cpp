@@ -9,24 +9,6 @@
 namespace golden {
 namespace {
 
-GLuint linked(const char* vertex, const char* fragment, std::initializer_list<const char*> attributes) {
-    const GLuint program = glCreateProgram();
-    for (const auto& [type, source] : {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
-        const GLuint shader = glCreateShader(static_cast<GLenum>(type));
-        glShaderSource(shader, 1, &source, nullptr);
-        glCompileShader(shader);
-        glAttachShader(program, shader);
-        glDeleteShader(shader);
-    }
-    GLuint location = 0;
-    for (const char* attribute : attributes) glBindAttribLocation(program, location++, attribute);
-    glLinkProgram(program);
-    GLint status = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &status);
-    if (!status) say("does not link");
-    return program;
-}
-
 struct Vertex {
     GLfloat weight, place[3];
 };
@@ -106,7 +88,7 @@ SCENE(shader_placed_mesh, 4) {
     clear(0.1f, 0, 0.1f);
     static GLuint program;
     if (frame == 0)
-        program = linked(
+        program = linked_program(
             "#version 120\nattribute vec3 place; attribute float weight; varying vec4 shade;\n"
             "uniform mat4 projection, view[3]; uniform vec2 shift;\n"
             "vec4 seen(in vec3 p) { vec4 eye = view[1] * vec4(p, 1.0); return eye; }\n"
@@ -138,7 +120,7 @@ SCENE(shader_placed_vertices, 3) {
     clear(0, 0.1f, 0.1f);
     static GLuint program, list;
     if (frame == 0) {
-        program = linked(
+        program = linked_program(
             "uniform vec4 bend; varying vec4 shade; void main() { shade = gl_Color;\n"
             "  gl_Position = gl_ProjectionMatrix * (gl_ModelViewMatrix * gl_Vertex) + bend; }",
             "varying vec4 shade; void main() { gl_FragColor = shade; }", {});
@@ -194,8 +176,8 @@ SCENE(shader_skinned_mesh, 3) {
         const std::string wave = std::string(attributes) +
                                  "uniform float time; void main() { shade = vec4(place.yx, weight, 1.0);\n"
                                  "  gl_Position = vec4(place.xy * 0.5 + 0.4 * sin(place.yx * 5.0 + time), 0.5, 1.0); }";
-        skinned = linked(bones.c_str(), kFragment, {"weight", "place"});
-        waving = linked(wave.c_str(), kFragment, {"weight", "place"});
+        skinned = linked_program(bones.c_str(), kFragment, {"weight", "place"});
+        waving = linked_program(wave.c_str(), kFragment, {"weight", "place"});
     }
     const Grid& grid = bind_grid();
     const float angle = 0.3f * static_cast<float>(frame);

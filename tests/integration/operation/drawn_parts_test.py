@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""A framebuffer object that is copied to the window as it is, of which each node draws its part (docs/framebuffers.md):
-what the wall shows is what it shows where every node draws all of it, also while the window moves, and after nodes were
-killed."""
+"""A framebuffer object that is brought to the window as it is, by a blit or as a texture, of which each node draws its
+part (docs/framebuffers.md): what the wall shows is what it shows where every node draws all of it, also while the
+window moves, and after nodes were killed."""
+import itertools
 import random
 import subprocess
 import sys
@@ -20,8 +21,9 @@ from xserver import XServer  # noqa: E402
 TILE = (200, 150)
 WINDOW = (400, 300)
 COLUMNS, ROWS = 200, 100  # of the mesh
-PROGRAM = (build_folder() / "bench" / "buffers", "--off-window", "--size", "%dx%d" % WINDOW, "--frames", "1000000",
-           "--mesh", f"{COLUMNS}x{ROWS}")
+PROGRAM = (build_folder() / "bench" / "buffers", "--frames", "1000000", "--mesh", f"{COLUMNS}x{ROWS}")
+WAYS = ("--off-window", "--as-texture")  # to the window
+ROUNDED = 12  # pixels of 120,000: a layer is drawn with an offset, and an image without
 HABIT = 10  # frames, by which it is drawn in parts
 PLACES = ((0, 0, 400, 300), (30, 20, 360, 270), (100, 0, 200, 300), (-150, -100, 400, 300), (0, 0, 200, 150),
           (0, 0, 400, 300))
@@ -36,9 +38,10 @@ class DrawnParts(unittest.TestCase):
     def setUp(self) -> None:
         self.wall = self.enterContext(Wall(tiles=(2, 2), tile_size=TILE, environment={"LP_NUM_THREADS": "0"}))
 
-    def start(self, in_parts: bool) -> int:
-        """The program, held behind the frames that make a habit."""
-        app = self.wall.run(*map(str, PROGRAM), rect=(0, 0, *WINDOW), hold=True, stdout=subprocess.DEVNULL,
+    def start(self, in_parts: bool, way: str | None, size: tuple[int, int] = WINDOW) -> int:
+        """The program, held behind the frames that make a habit. `way`: to the window; none: it draws there."""
+        options = ["--size", "%dx%d" % size, *([way] if way else [])]
+        app = self.wall.run(*map(str, PROGRAM), *options, rect=(0, 0, *size), hold=True, stdout=subprocess.DEVNULL,
                             env=self.x.environment(WALLGL_DRAWN_PARTS="1" if in_parts else "0"))
         session = self.wall.wait_session(app)
         self.step(session, HABIT)
@@ -57,50 +60,78 @@ class DrawnParts(unittest.TestCase):
         time.sleep(2.5)
         return sum(node["array_elements"] for node in self.wall.nodes())
 
+    def close(self, session: int) -> None:
+        self.wall.ctl("close", session)
+        self.wall._until(lambda: not self.wall.sessions(), "the program has ended")
+
     def test_each_node_processes_its_part(self) -> None:
         of_mesh = {}
-        for in_parts in (True, False):
-            session = self.start(in_parts)
+        for way, in_parts in ((WAYS[0], True), (WAYS[1], True), (WAYS[1], False)):
+            session = self.start(in_parts, way)
             before = self.elements()
             self.step(session, 20)
-            of_mesh[in_parts] = (self.elements() - before) / 20 / (6 * COLUMNS * ROWS)
-            self.wall.ctl("close", session)
-        print(f"all nodes together process {of_mesh[True]:.2f} times the mesh in parts, {of_mesh[False]:.2f} as a "
-              "whole", flush=True)
-        self.assertLess(of_mesh[True], 2.5)  # pieces of so small a mesh are large
-        self.assertGreater(of_mesh[False], 3.9)
+            of_mesh[way, in_parts] = (self.elements() - before) / 20 / (6 * COLUMNS * ROWS)
+            self.close(session)
+        for (way, in_parts), times in of_mesh.items():
+            print(f"{way}: all nodes together process {times:.2f} times the mesh{' in parts' if in_parts else ''}",
+                  flush=True)
+            if in_parts:
+                self.assertLess(times, 2.5, way)  # pieces of so small a mesh are large
+            else:
+                self.assertGreater(times, 3.9, way)
 
     def test_every_frame_is_right_while_the_window_moves(self) -> None:
-        shown: dict[bool, list[numpy.ndarray]] = {True: [], False: []}
-        for in_parts, pictures in shown.items():
-            session = self.start(in_parts)
-            pictures.append(self.picture())
+        shown: dict[tuple[str, bool], list[numpy.ndarray]] = {}
+        for way, in_parts in itertools.product(WAYS, (False, True)):
+            session = self.start(in_parts, way)
+            pictures = shown[way, in_parts] = [self.picture()]
             for place in PLACES:
                 self.wall.ctl("place", session, *place)
                 for _ in range(3):
                     self.step(session)
                     pictures.append(self.picture())
-            self.wall.ctl("close", session)
-            self.wall._until(lambda: not self.wall.sessions(), "the program has ended")
-        self.assertGreater(len(numpy.unique(shown[False][0].reshape(-1, 3), axis=0)), 10, "a picture of several shades")
-        for number, (parts, whole) in enumerate(zip(shown[True], shown[False], strict=True)):
-            self.assertEqual(int((parts != whole).any(axis=2).sum()), 0, f"picture {number}")
+            self.close(session)
+        for way in WAYS:
+            shades = len(numpy.unique(shown[way, False][0].reshape(-1, 3), axis=0))
+            self.assertGreater(shades, 10, "a picture of several shades")
+            for number, (parts, whole) in enumerate(zip(shown[way, True], shown[way, False], strict=True)):
+                self.assertEqual(int((parts != whole).any(axis=2).sum()), 0, f"{way}: picture {number}")
+
+    def test_a_window_that_is_shown_larger_has_the_walls_resolution(self) -> None:
+        """As if it was drawn to the window itself, of half the wall's size, but where borders are rounded otherwise."""
+        shown = {}
+        for way in (None, *WAYS):
+            session = self.start(True, way, size=(200, 150))
+            self.wall.ctl("place", session, 0, 0, *WINDOW)
+            self.step(session, 70)  # the habit is a longer one once it was broken
+            shown[way] = self.picture()
+            self.close(session)
+        small = cv2.resize(shown[None], (200, 150), interpolation=cv2.INTER_AREA)
+        blown_up = cv2.resize(small, WINDOW, interpolation=cv2.INTER_NEAREST)
+        self.assertGreater(int((shown[None] != blown_up).any(axis=2).sum()), 10_000, "more than the window's pixels")
+        for way in WAYS:
+            self.assertLess(int((shown[way] != shown[None]).any(axis=2).sum()), ROUNDED, way)
 
     def test_nodes_that_are_killed_come_back(self) -> None:
-        session = self.start(True)
-        expected = self.picture()
-        self.wall.hold(session, False)
         chance = random.Random(5)
-        for _ in range(4):
-            name = chance.choice(self.wall.node_names)
-            node = self.wall.daemons[name]
-            node.kill()
-            node.wait()
-            self.wall.start_node(name)
-            begin = time.monotonic()
-            while (self.picture() != expected).any():
-                self.assertLess(time.monotonic() - begin, RIGHT_AGAIN, f"{name} is not right again")
-                time.sleep(0.1)
+        for way in WAYS:
+            session = self.start(True, way)
+            expected = self.picture()
+            self.wall.hold(session, False)
+            for _ in range(3):
+                self.kill_one(chance, expected)
+            self.close(session)
+
+    def kill_one(self, chance: random.Random, expected: numpy.ndarray) -> None:
+        name = chance.choice(self.wall.node_names)
+        node = self.wall.daemons[name]
+        node.kill()
+        node.wait()
+        self.wall.start_node(name)
+        begin = time.monotonic()
+        while (self.picture() != expected).any():
+            self.assertLess(time.monotonic() - begin, RIGHT_AGAIN, f"{name} is not right again")
+            time.sleep(0.1)
 
 
 if __name__ == "__main__":

@@ -135,7 +135,7 @@ TEST_F(FramebufferTest, ClipSpaceMayEndAtTheWindowsUpperEdge) {
 TEST_F(FramebufferTest, OnlyThePartThatIsNeededIsDrawn) {
     draw_texture();
     Batch batch;
-    pack::TargetPart(batch.buffer(), kFramebuffer, 8, 8, 16, 16);
+    pack::TargetPart(batch.buffer(), kFramebuffer, 8, 8, 16, 16, 0, 0);
     clear(batch, {0, 1, 0, 1});
     session_->expect_run(batch);
     EXPECT_EQ(at(7, 8), kRed);
@@ -152,14 +152,74 @@ TEST_F(FramebufferTest, OnlyThePartThatIsNeededIsDrawn) {
     EXPECT_EQ(at(12, 8), kGreen) << "beyond the scissor";
     Batch whole;
     clear(whole, {0, 1, 0, 1});
-    pack::TargetPart(whole.buffer(), kOther, 0, 0, 1, 1);  // which is not there
+    pack::TargetPart(whole.buffer(), kOther, 0, 0, 1, 1, 0, 0);  // which is not there
     session_->expect_run(whole);
     EXPECT_EQ(at(0, 0), kGreen);
     for (const std::int32_t x : {-1, std::numeric_limits<std::int32_t>::max()})
-        EXPECT_THAT(refusal([x](wire::PackBuffer& b) { pack::TargetPart(b, kFramebuffer, x, 0, 1, 1); }),
+        EXPECT_THAT(refusal([x](wire::PackBuffer& b) { pack::TargetPart(b, kFramebuffer, x, 0, 1, 1, 0, 0); }),
                     HasSubstr("outside of it"));
-    EXPECT_THAT(refusal([](wire::PackBuffer& b) { pack::TargetPart(b, kFramebuffer, 0, 0, ~0u, 1); }),
+    EXPECT_THAT(refusal([](wire::PackBuffer& b) { pack::TargetPart(b, kFramebuffer, 0, 0, ~0u, 1, 0, 0); }),
                 HasSubstr("larger than any image"));
+}
+
+TEST_F(FramebufferTest, ImagesMayBeLargerForAWhile) {
+    draw_texture();
+    constexpr float kEnd = -1 + 2 * 1.4f / kSize;  // a pixel, and a little less than half of the next
+    const auto part = [&](wire::PackBuffer& b) {
+        pack::TargetPart(b, kFramebuffer, 0, 0, kSize, kSize, 2 * kSize, 2 * kSize);
+    };
+    Batch batch;
+    batch.set<el::color>({0, 1, 0, 1});
+    part(batch.buffer());
+    draw_square(batch, kEnd);
+    pack::TargetWhole(batch.buffer(), kFramebuffer);
+    session_->expect_run(batch);
+    EXPECT_EQ(at(0, 0), kGreen);
+    EXPECT_EQ(at(3, 3), kRed) << "as it was before";
+    const Pixel border = at(1, 0);
+    EXPECT_GT(border[0], 0) << "half of it";
+    EXPECT_GT(border[1], 0);
+    EXPECT_EQ(texels(kTexture), std::size_t{4} * kSize * kSize) << "of the size that it was defined with";
+
+    // A blit of it, and a window that looks it up, take it for what it was.
+    Batch shown;
+    part(shown.buffer());
+    clear(shown, {0, 1, 0, 1});
+    pack::BindTargets(shown.buffer(), {}, kFramebuffer, 1);
+    shown.block(
+        1, [](auto& b) { pack::Blit(b, 0, 0, kSize, kSize, 0, 0, kSize, kSize, GL_COLOR_BUFFER_BIT, GL_NEAREST); });
+    session_->expect_run(shown);
+    EXPECT_EQ(at(0, 0), kGreen);
+    EXPECT_EQ(at(kSize - 1, kSize - 1), kGreen);
+    Batch sampled;
+    pack::BindTargets(sampled.buffer(), {}, {}, 1);
+    clear(sampled, {0, 0, 0, 1});
+    sampled.set<el::color>({1, 1, 1, 1}).set<el::texture_binding_2d>(kTexture.value).set<el::texture_2d_enabled>(1);
+    draw_square(sampled, 1);
+    session_->expect_run(sampled);
+    EXPECT_EQ(at(kSize - 1, kSize - 1), kGreen);
+}
+
+TEST_F(FramebufferTest, ImagesThatCannotBeLargerStayAsTheyAre) {
+    Batch batch;
+    pack::Renderbuffer(batch.buffer(), kColor, 4, GL_RGBA8, kSize, kSize);
+    define_texture(batch.buffer(), kTexture);
+    glstate::FramebufferDefinition definition;
+    definition.attachments = {{GL_COLOR_ATTACHMENT0, kColor, GL_RENDERBUFFER, 0, 0}};
+    pack::Framebuffer(batch.buffer(), kFramebuffer, encode(definition));
+    define_framebuffer(batch.buffer(), kOther, kTexture);
+    for (const std::uint32_t side : {2u * kSize, ~0u}) {
+        pack::TargetPart(batch.buffer(), kFramebuffer, 0, 0, kSize, kSize, side, side);  // of four samples a pixel
+        pack::BindTargets(batch.buffer(), kFramebuffer, kFramebuffer, 1);
+        clear(batch, {1, 0, 0, 1});
+        pack::BindTargets(batch.buffer(), kOther, kFramebuffer, 1);
+        batch.block(
+            1, [](auto& b) { pack::Blit(b, 0, 0, kSize, kSize, 0, 0, kSize, kSize, GL_COLOR_BUFFER_BIT, GL_NEAREST); });
+        pack::TargetWhole(batch.buffer(), kFramebuffer);
+    }
+    pack::BindTargets(batch.buffer(), kOther, kOther, 1);
+    session_->expect_run(batch);
+    EXPECT_EQ(at(kSize - 1, kSize - 1), kRed);
 }
 
 TEST_F(FramebufferTest, TheWindowIsLeftAlone) {

@@ -401,8 +401,18 @@ TEST(PositionRecogniser, ConditionsOnExtensionsAreTheDriversAffair) {
     EXPECT_TRUE(recognise("#version 120\n#extension GL_ARB_texture_rectangle : enable\n" + end).program.known());
     EXPECT_TRUE(recognise("// of GL_ARB_draw_instanced\n/* GL_ARB_x */ #ifdef GL_ES\n#endif\n" + end).program.known());
     EXPECT_TRUE(recognise("#if __VERSION__ > 100\n" + end + "#endif\n").program.known());
-    EXPECT_FALSE(recognise("#ifdef GL_ARB_draw_instanced\n#endif\n" + end).program.known());
-    EXPECT_FALSE(recognise("#if defined(GL_EXT_gpu_shader4)\n#endif\n" + end).program.known());
+    EXPECT_TRUE(recognise("#ifdef GL_ARB_draw_instanced\n#extension GL_ARB_draw_instanced : enable\n#else\n# extension "
+                          "GL_EXT_draw_instanced : enable\n#endif\n" +
+                          end)
+                    .program.known());
+    EXPECT_TRUE(recognise("#ifdef GL_ARB_draw_instanced\n#ifdef GL_X\n\n#endif\n#endif\n" + end).program.known());
+    EXPECT_TRUE(recognise("#ifdef GL_ARB_a\n#endif\n#ifdef GL_ARB_b\n#endif\n" + end).program.known()) << "two";
+    EXPECT_FALSE(recognise("#ifdef GL_ARB_draw_instanced\n#define N 1\n#endif\n" + end).program.known());
+    EXPECT_FALSE(recognise("#ifdef GL_ARB_a\n#endif\n#ifdef GL_ARB_b\nfloat f;\n#endif\n" + end).program.known());
+    EXPECT_FALSE(recognise("#ifdef GL_ARB_a\n#extension GL_ARB_a : enable /*\n#endif */\nint i;\n#endif\n" + end)
+                     .program.known());
+    EXPECT_FALSE(recognise("#ifdef GL_ARB_a\n" + end).program.known());
+    EXPECT_FALSE(recognise("#if defined(GL_EXT_gpu_shader4)\nfloat f;\n#endif\n" + end).program.known());
     EXPECT_FALSE(recognise("#define a(x) GL##x\n" + end).program.known());
     EXPECT_FALSE(recognise("/* never ends " + end).program.known());
 }

@@ -21,8 +21,9 @@ the command's group; see common/glapi/decoder.h for what H must offer and for th
 """
 
 
-FRAMING = 5  # of common/wire/frame.h and batch.h; 2: a batch may come in parts; 3: rings, streams that outlive
-             # their connection; 4: coded batches; 5: programs whose cameras are named
+FRAMING = 6  # of common/wire/frame.h and batch.h; 2: a batch may come in parts; 3: rings, streams that outlive
+             # their connection; 4: coded batches; 5: programs whose cameras are named; 6: answers
+             # that tell where programs look textures up
 
 
 def stream_version(ops, elements):

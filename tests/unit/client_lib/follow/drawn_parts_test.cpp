@@ -45,8 +45,10 @@ struct OneImage final : DrawnTarget {
     void for_each_image(const std::function<void(const Object&)>& use) const override { use(image); }
     void note_drawn() override {}
     std::uint64_t defined() const override { return definition; }
+    bool may_be_larger() const override { return larger; }
     const Object& image;
     std::uint64_t definition = 1;
+    bool larger = true;
 };
 
 struct Sampled final : UsedObjects {
@@ -160,8 +162,8 @@ TEST_F(DrawnInParts, WhoSamplesItHasAllOfIt) {
         EXPECT_EQ(batch->opcodes.back(), static_cast<std::byte>(Op::BufferSubData));
         const auto* const text = reinterpret_cast<const char*>(batch->operands.data());
         const std::string operands(text, batch->operands.size());
-        // The right node's part begins a pixel before its tile.
-        EXPECT_NE(operands.find("lllrrrrrlllrrrrr"), std::string::npos) << operands;
+        // The right node's part begins two pixels before its tile.
+        EXPECT_NE(operands.find("llrrrrrrllrrrrrr"), std::string::npos) << operands;
     }
 }
 
@@ -176,6 +178,47 @@ TEST_F(DrawnInParts, WhoDrawsWithOtherObjectsLeavesItSo) {
     EXPECT_NE(target->parts(), nullptr) << "it draws to it";
     parts.before_drawing(source(DrawTarget(surface), of_target()));
     EXPECT_NE(target->parts(), nullptr) << "it is bound to be read from";
+}
+
+TEST_F(DrawnInParts, WhoLooksUpWhatLiesUnderItLeavesItSo) {
+    begin();
+    parts.allow(kContext, {image->id});
+    draw_with({image.get()});
+    EXPECT_NE(target->parts(), nullptr);
+    for (const NodeIndex node : {kLeft, kRight}) nodes[node].slow = true, nodes[node].object_stamps.erase(image->id);
+    parts.allow(kContext, {});
+    parts.before_drawing(source(DrawTarget(surface), DrawTarget(surface)));
+    EXPECT_EQ(target->parts(), nullptr) << "the same objects, and nobody says so of this draw";
+}
+
+TEST_F(DrawnInParts, WhoLooksUpMoreThanOnceHasAllOfIt) {
+    begin();
+    for (const NodeIndex node : {kLeft, kRight}) nodes[node].slow = true, nodes[node].object_stamps.erase(image->id);
+    parts.allow(kContext, {image->id});
+    draw_with({image.get(), image.get()});
+    EXPECT_EQ(target->parts(), nullptr);
+}
+
+TEST_F(DrawnInParts, ItIsDrawnAtTheResolutionOfAWallThatShowsItLarger) {
+    surface.layout.rect = {0, 0, 20, 5};  // two and a half times as large
+    parts.begin(target, source(DrawTarget(surface), of_target()), 1, 1);
+    ASSERT_NE(target->parts(), nullptr);
+    EXPECT_EQ(target->parts()->images_width, 20u) << "from 2.5 to 22.5";
+    EXPECT_EQ(target->parts()->images_height, 5u);
+    for (const NodeIndex node : {kLeft, kRight}) nodes[node].object_stamps.erase(image->id);
+    parts.end_all();
+    for (const NodeIndex node : {kLeft, kRight}) nodes[node].object_stamps[image->id] = 1;
+    target->larger = false;
+    begin();
+    ASSERT_NE(target->parts(), nullptr);
+    EXPECT_EQ(target->parts()->images_width, 0u) << "of several samples a pixel";
+}
+
+TEST_F(DrawnInParts, ItIsNeverSmallerThanTheProgramKnowsIt) {
+    surface.layout.rect = {0, 0, 4, 1};
+    begin();
+    ASSERT_NE(target->parts(), nullptr);
+    EXPECT_EQ(target->parts()->images_width, 0u);
 }
 
 TEST_F(DrawnInParts, ItEndsWhenTheWindowOrTheNodesOrItselfChange) {

@@ -2,6 +2,7 @@
 // Programs and buffers as the client keeps them: what needs no node.
 #include "client_lib/objects/program.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -45,6 +46,33 @@ TEST(ExecutableTest, LocationsAreDense) {
     EXPECT_EQ(e->attribute_location_of("gl_VertexID"), -1);
     EXPECT_EQ(e->place_of(6), nullptr);
     EXPECT_EQ(e->place_of(-1), nullptr);
+}
+
+TEST(ExecutableTest, LookupsFollowTheUniforms) {
+    using glapi::PositionOp;
+    const glapi::PositionProgram shifted{
+        {{"shift", 0}},
+        "place",
+        true,
+        {{PositionOp::attribute, 1, 4, {}}, {PositionOp::uniform, 1, 4, {0}}, {PositionOp::add, 1, 4, {0, 1}}}};
+    auto told = reflection();
+    told.uniforms.push_back({GL_SAMPLER_2D, 1, false, false, "picture", {0}});
+    told.uniforms.push_back({GL_FLOAT_VEC4, 1, false, false, "shift", {0, 0, 0, 0}});
+    told.lookups = {{"images", shifted}, {"color", shifted}, {"gone", shifted}, {"picture", shifted}};
+    const auto e = Executable::make({}, told);
+    ASSERT_TRUE(e);
+    ASSERT_EQ(e->lookups().size(), 1u) << "of a sampler that is there and no array";
+    EXPECT_EQ(e->uniforms[e->lookups()[0].uniform].name, "picture");
+    Uniform& shift = *std::ranges::find(e->uniforms, "shift", &Uniform::name);
+    const float values[] = {0.5f, 2, 0, 0};
+    std::uint32_t words[4];
+    std::memcpy(words, values, sizeof words);
+    e->store(shift, 0, words);
+    const auto* transform = e->lookups()[0].coordinates.transform(glstate::kIdentity, glstate::kIdentity);
+    ASSERT_NE(transform, nullptr);
+    EXPECT_EQ(transform->constant[0], 0.5f);
+    EXPECT_EQ(transform->constant[1], 2);
+    EXPECT_EQ(transform->linear[0], 1);
 }
 
 TEST(ExecutableTest, LocationsAreThoseOfTheShaders) {
