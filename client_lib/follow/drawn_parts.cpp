@@ -12,6 +12,7 @@
 #include "client_lib/link/parallel.h"
 #include "client_lib/process/log.h"
 #include "client_lib/process/options.h"
+#include "client_lib/process/stats.h"
 
 namespace wall::client {
 namespace {
@@ -159,6 +160,7 @@ void DrawnParts::add(const std::shared_ptr<DrawnTarget>& target, const DrawSourc
     parts->definition = target->defined();
     target->draw_parts(std::move(parts));
     tell(drawn, target.get());
+    stats().add("drawn_parts_begun");
     seen_.clear();  // what is drawn with just as before is looked at once more
     drawn_.push_back(std::move(drawn));
 }
@@ -268,6 +270,7 @@ void DrawnParts::end(const ShareGroup& share) {
         over.push_back(std::move(drawn));
         return true;
     });
+    if (!over.empty()) stats().add("drawn_parts_ended", over.size());
     for (const Drawn& drawn : over) {
         tell(drawn, nullptr);
         if (const auto target = drawn.target.lock()) target->draw_whole();
