@@ -130,7 +130,7 @@ bool fills(const Context& c, GLenum mode) {
 bool DrawOfParts::may_copy(const Context& c, const ArrayDraw& draw) {
     return draw.count <= kMostLooking && draw.count >= 3 && draw.instances == 1 && c.program && c.at_once() &&
            c.share().has_drawn.load(std::memory_order_relaxed) && c.captures->now == nullptr && !c.draws_nothing &&
-           fills(c, draw.mode);
+           c.state.local.render_mode == GL_RENDER && fills(c, draw.mode);
 }
 
 DrawOfParts::DrawOfParts(Context& c, const ArrayDraw& draw) : c_(c) {

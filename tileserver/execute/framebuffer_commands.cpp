@@ -39,8 +39,8 @@ void FramebufferCommands::TargetPart(ClientName name, std::int32_t x, std::int32
 void FramebufferCommands::TargetWhole(ClientName name) {
     const auto framebuffer = execution_.session.objects.find<tileserver::Framebuffer>(name);
     if (framebuffer == nullptr) return;
-    framebuffer->draw_part(std::nullopt);
     framebuffer->restore(execution_.session.objects, execution_.node.shared);
+    framebuffer->draw_part(std::nullopt);
 }
 
 }  // namespace wall::tileserver

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "tileserver/driver/window_values.h"
 #include "tileserver/objects/driver_framebuffer.h"
 #include "tileserver/objects/renderbuffer.h"
 #include "tileserver/objects/texture.h"
@@ -169,10 +170,17 @@ bool Framebuffer::all_images(const ObjectTable& objects, Use&& use) {
     });
 }
 
-/// From those of another framebuffer with as many, which are of the size that `as` says.
+/// From those of another framebuffer with as many, which lie as `as` says; of a part only that, so that the rest of
+/// large images takes no memory where drivers take it as it is written.
 void Framebuffer::copy_images(GLuint from, const LayerGeometry& as) {
+    const WindowValues::IntBox part =
+        part_ ? WindowValues::IntBox{part_->x, part_->y, part_->width, part_->height}
+              : WindowValues::IntBox{0, 0, static_cast<std::int32_t>(geometry_.window_width),
+                                     static_cast<std::int32_t>(geometry_.window_height)};
+    const WindowValues::IntBox source = layer_box(as, part), target = layer_box(geometry_, part);
+    if (source.width == 0 || source.height == 0 || target.width == 0 || target.height == 0) return;
     driver_.disable_scissor();
-    const bool smooth = as.area.width > geometry_.area.width || as.area.height > geometry_.area.height;
+    const bool smooth = source.width > target.width || source.height > target.height;
     for (const auto& attachment : definition_.attachments) {
         const GLbitfield buffers = buffers_at(attachment.point);
         GLint kind = GL_NONE;
@@ -184,8 +192,9 @@ void Framebuffer::copy_images(GLuint from, const LayerGeometry& as) {
         }
         const bool whole_numbers = kind == GL_INT || kind == GL_UNSIGNED_INT;
         const bool linear = smooth && buffers == GL_COLOR_BUFFER_BIT && !whole_numbers;
-        gl_.BlitNamedFramebuffer(from, framebuffer_, 0, 0, as.area.width, as.area.height, 0, 0, geometry_.area.width,
-                                 geometry_.area.height, buffers, linear ? GL_LINEAR : GL_NEAREST);
+        gl_.BlitNamedFramebuffer(from, framebuffer_, source.x, source.y, source.x + source.width,
+                                 source.y + source.height, target.x, target.y, target.x + target.width,
+                                 target.y + target.height, buffers, linear ? GL_LINEAR : GL_NEAREST);
     }
     set_buffers();
     driver_.drain_errors();
