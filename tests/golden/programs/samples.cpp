@@ -38,20 +38,8 @@ void lines_and_points() {
 }
 
 GLuint linked(const char* fragment) {
-    const char* const vertex = "#version 130\nvoid main() { gl_Position = gl_Vertex; gl_FrontColor = gl_Color; }\n";
-    const GLuint program = glCreateProgram();
-    for (const auto& [type, source] : {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
-        const GLuint shader = glCreateShader(static_cast<GLenum>(type));
-        glShaderSource(shader, 1, &source, nullptr);
-        glCompileShader(shader);
-        glAttachShader(program, shader);
-        glDeleteShader(shader);
-    }
-    glLinkProgram(program);
-    GLint status = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &status);
-    if (!status) say("does not link");
-    return program;
+    return linked_program("#version 130\nvoid main() { gl_Position = gl_Vertex; gl_FrontColor = gl_Color; }\n",
+                          fragment, {});
 }
 
 void say_of_the_window() {
