@@ -111,6 +111,7 @@ void note_copy(Context& c, const std::shared_ptr<DrawnTarget>& copied, const Cop
         std::lock_guard lock(c.share().mutex);
         if (!copied->has_plain_images()) return;
     }
+    c.flush_block();  // the copy itself
     c.session().drawn_parts([&](DrawnParts& parts) { parts.begin(copied, c.draw_source(), to.x, to.y); });
 }
 

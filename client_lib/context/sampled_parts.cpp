@@ -137,10 +137,8 @@ DrawOfParts::DrawOfParts(Context& c, const ArrayDraw& draw) : c_(c) {
     const DrawTarget target = c.draw_target();
     if (!target || !(target.of_objects() || draws_to_back_buffer(c))) return;
     find_images();
-    if (images_.empty()) return;
-    c_.flush_block();
-    find_places(draw);
-    if (!images_.empty()) allow();
+    if (!images_.empty()) find_places(draw);
+    if (std::ranges::any_of(images_, [](const Image& image) { return image.target->parts() != nullptr; })) allow();
 }
 
 void DrawOfParts::find_images() {
@@ -177,17 +175,21 @@ void DrawOfParts::find_places(const ArrayDraw& draw) {
     });
 }
 
+/// It alone: what was drawn before may look up more.
 void DrawOfParts::allow() {
+    c_.flush_block();
     std::vector<ClientName> images;
     for (const Image& image : images_)
         if (goes_on(c_, *image.target, image.to)) images.push_back(image.texture->id);
-    if (!images.empty()) c_.session().drawn_parts([&](DrawnParts& parts) { parts.allow(c_.id, std::move(images)); });
+    allowed_ = !images.empty();
+    if (allowed_) c_.session().drawn_parts([&](DrawnParts& parts) { parts.allow(c_.id, std::move(images)); });
 }
 
 void DrawOfParts::finish() {
-    if (images_.empty()) return;
-    c_.flush_block();
-    c_.session().drawn_parts([&](DrawnParts& parts) { parts.allow(c_.id, {}); });
+    if (allowed_) {
+        c_.flush_block();
+        c_.session().drawn_parts([&](DrawnParts& parts) { parts.allow(c_.id, {}); });
+    }
     for (const Image& image : images_) note_copy(c_, image.target, image.to);
 }
 

@@ -40,6 +40,7 @@ private:
 
     Context& c_;
     std::vector<Image> images_;  ///< that are copied as they are
+    bool allowed_ = false;       ///< some of them are drawn in parts, and may stay so
 };
 
 }  // namespace wall::client

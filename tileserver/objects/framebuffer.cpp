@@ -154,20 +154,20 @@ void Framebuffer::find_size() {
 
 // ---- larger images ----
 
-/// Calls `use(image)` with each texture and renderbuffer, once; false as soon as it says so, or where one is gone.
+/// Calls `use(image)` with each texture and renderbuffer that is there, once; whether that was all of them, and all
+/// said so.
 template <class Use>
 bool Framebuffer::all_images(const ObjectTable& objects, Use&& use) {
     std::vector<ClientName> seen;
-    return std::ranges::all_of(definition_.attachments, [&](const glstate::FramebufferAttachment& attachment) {
-        if (std::ranges::find(seen, attachment.object) != seen.end()) return true;
+    bool all = true;
+    const auto use_one = [&](const auto& found) { all = found && *found != nullptr && use(**found) && all; };
+    for (const glstate::FramebufferAttachment& attachment : definition_.attachments) {
+        if (std::ranges::find(seen, attachment.object) != seen.end()) continue;
         seen.push_back(attachment.object);
-        if (attachment.target == GL_RENDERBUFFER) {
-            const auto found = objects.look_up<Renderbuffer>(attachment.object);
-            return found && *found != nullptr && use(**found);
-        }
-        const auto found = objects.look_up<Texture>(attachment.object);
-        return found && *found != nullptr && use(**found);
-    });
+        if (attachment.target == GL_RENDERBUFFER) use_one(objects.look_up<Renderbuffer>(attachment.object));
+        else use_one(objects.look_up<Texture>(attachment.object));
+    }
+    return all;
 }
 
 /// From those of another framebuffer with as many, which lie as `as` says; of a part only that, so that the rest of
