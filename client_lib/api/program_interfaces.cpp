@@ -103,10 +103,11 @@ GLint location_of(const Executable& executable, GLenum interface, const GLchar* 
 
 }  // namespace
 
+/// Of words that there are not the specification says GL_INVALID_ENUM (OpenGL 4.6, 7.3.1), and Mesa 22.3 this.
 void GetProgramInterfaceiv(Context& c, GLuint name, GLenum interface_name, GLenum pname, GLint* params) {
     if (!program_of(c, name)) return;
-    const ProgramInterface* interface = interface_of(c, interface_name);
-    if (!interface) return;
+    const ProgramInterface* interface = find_program_interface(interface_name);
+    if (!interface || !params) return c.error(GL_INVALID_OPERATION);
     with_executable(c, name, [&](const Executable* executable) {
         const std::size_t count = count_of(*interface, executable);
         switch (pname) {
@@ -121,7 +122,7 @@ void GetProgramInterfaceiv(Context& c, GLuint name, GLenum interface_name, GLenu
                 *params =
                     greatest(count, [&](std::size_t i) { return interface->describe(*executable, i).list.size(); });
                 break;
-            default: c.error(GL_INVALID_ENUM);
+            default: c.error(GL_INVALID_OPERATION);
         }
     });
 }

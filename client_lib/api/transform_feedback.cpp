@@ -17,27 +17,32 @@ namespace {
 
 namespace el = glstate::el;
 
-/// One for each varying, or one for all, or those that shaders name (xfb_buffer).
-std::size_t buffers_of(const Executable& executable) {
-    std::size_t named = 0;
-    for (const glapi::CaptureBuffer& each : executable.capture_buffers)
-        named = std::max(named, std::size_t{each.binding} + 1);
-    if (named != 0) return named;
-    if (executable.capture_mode == GL_SEPARATE_ATTRIBS) return executable.captured.size();
-    return static_cast<std::size_t>(
-               std::ranges::count(executable.captured, "gl_NextBuffer", &glapi::CapturedVarying::name)) +
-           1;
+/// Which places of buffers: one for each varying, or one for all, or those that shaders name (xfb_buffer).
+std::vector<bool> buffers_of(const Executable& executable) {
+    std::vector<bool> named;
+    for (const glapi::CaptureBuffer& each : executable.capture_buffers) {
+        const std::size_t place = std::min<std::size_t>(each.binding, kCaptureBuffers);  // that one is never bound
+        named.resize(std::max(named.size(), place + 1));
+        named[place] = true;
+    }
+    if (!named.empty()) return named;
+    const auto buffers =
+        executable.capture_mode == GL_SEPARATE_ATTRIBS
+            ? static_cast<std::ptrdiff_t>(executable.captured.size())
+            : std::ranges::count(executable.captured, "gl_NextBuffer", &glapi::CapturedVarying::name) + 1;
+    return std::vector<bool>(static_cast<std::size_t>(buffers), true);
 }
 
 /// Nothing: one of them is missing.
-std::optional<std::vector<CapturedPart>> bound_parts(Context& c, std::size_t count) {
-    if (count > kCaptureBuffers) return std::nullopt;
-    std::vector<CapturedPart> parts;
-    for (unsigned i = 0; i < count; ++i) {
+std::optional<std::vector<CapturedPart>> bound_parts(Context& c, const std::vector<bool>& wanted) {
+    if (wanted.size() > kCaptureBuffers) return std::nullopt;
+    std::vector<CapturedPart> parts(wanted.size());
+    for (unsigned i = 0; i < wanted.size(); ++i) {
+        if (!wanted[i]) continue;
         const glstate::BufferRange& range = c.get<el::feedback_buffer>(i);
         const auto found = c.buffers->by_id.find(ClientName(range.buffer));
         if (found == c.buffers->by_id.end()) return std::nullopt;
-        parts.push_back({found->second, range.offset, range.size});
+        parts[i] = {found->second, range.offset, range.size};
     }
     return parts;
 }
@@ -100,13 +105,13 @@ void BeginTransformFeedback(Context& c, GLenum mode) {
     if (mode != GL_POINTS && mode != GL_LINES && mode != GL_TRIANGLES) return c.error(GL_INVALID_ENUM);
     FeedbackObject& object = c.captures->bound();
     if (object.active || !c.program) return c.error(GL_INVALID_OPERATION);
-    std::size_t buffers = 0;
+    std::vector<bool> buffers;
     {
         std::lock_guard lock(c.share().mutex);
         const Executable& executable = *c.program->executable;
         if (!executable.captured.empty()) buffers = buffers_of(executable);
     }
-    auto parts = buffers != 0 ? bound_parts(c, buffers) : std::nullopt;
+    auto parts = !buffers.empty() ? bound_parts(c, buffers) : std::nullopt;
     if (!parts) return c.error(GL_INVALID_OPERATION);
     c.flush_block();
     object.active = std::make_shared<Capture>(mode, *std::move(parts));

@@ -168,7 +168,7 @@ void GetUniformIndices(Context& c, GLuint name, GLsizei count, const GLchar* con
     if (count < 0) return c.error(GL_INVALID_VALUE);
     with_executable(c, name, [&](const Executable& executable) {
         for (GLsizei i = 0; i < count; ++i)
-            indices[i] = executable.uniform_index_of(names[i]).value_or(GL_INVALID_INDEX);
+            indices[i] = names[i] ? executable.uniform_index_of(names[i]).value_or(GL_INVALID_INDEX) : GL_INVALID_INDEX;
     });
 }
 

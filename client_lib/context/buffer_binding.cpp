@@ -121,7 +121,8 @@ std::vector<std::uint32_t> named_buffers(const Context& c) {
     c.captures->for_each_object([&](const FeedbackObject& object) {
         for (const glstate::BufferRange& range : object.buffers) ids.push_back(range.buffer);
         if (!object.active) return;
-        for (const CapturedPart& part : object.active->parts()) ids.push_back(part.buffer->id.value);
+        for (const CapturedPart& part : object.active->parts())
+            if (part.buffer) ids.push_back(part.buffer->id.value);
     });
     for (const auto& saved : c.attributes->client) {
         add_named(saved->state, ids);

@@ -30,7 +30,8 @@ void Capture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const 
         return glapi::pack::CaptureCounted(buffer, id, std::as_bytes(std::span(nothing)));
     }
     std::vector<glstate::BufferRange> ranges;
-    for (const CapturedPart& part : parts_) ranges.push_back({part.buffer->id.value, part.offset, part.bytes});
+    for (const CapturedPart& part : parts_)
+        ranges.push_back({part.buffer ? part.buffer->id.value : 0, part.offset, part.bytes});
     glapi::pack::Capture(buffer, id, mode_, std::as_bytes(std::span(ranges)));
     packed();
 }
@@ -44,12 +45,14 @@ void Capture::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const s
 }
 
 void Capture::for_each_image(const std::function<void(const Object&)>& use) const {
-    for (const CapturedPart& part : parts_) use(*part.buffer);
+    for (const CapturedPart& part : parts_)
+        if (part.buffer) use(*part.buffer);
 }
 
 void Capture::note_drawn() {
     drawn_ = true;
-    for (const CapturedPart& part : parts_) part.buffer->note_drawn();
+    for (const CapturedPart& part : parts_)
+        if (part.buffer) part.buffer->note_drawn();
 }
 
 void Capture::for_each_used(const std::function<void(const Object&)>& use) const {

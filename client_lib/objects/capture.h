@@ -23,7 +23,7 @@ inline constexpr unsigned kVertexStreams = glstate::el::captured_query::count;
 
 /// Part of a buffer that values go to.
 struct CapturedPart {
-    std::shared_ptr<Buffer> buffer;
+    std::shared_ptr<Buffer> buffer;       ///< null: no values go to this place
     std::uint32_t offset = 0, bytes = 0;  ///< bytes 0: as far as the buffer goes
 };
 

@@ -208,8 +208,11 @@ TEST_F(ProgramInterfaces, RefuseWhatTheyDoNotHave) {
         EXPECT_EQ(of_interface(interface, word), -99);
         EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
     }
-    EXPECT_EQ(of_interface(GL_UNIFORM, GL_TYPE), -99);
-    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+    for (const auto& [interface, word] :
+         {std::pair<GLenum, GLenum>{GL_UNIFORM, GL_TYPE}, {GL_RGBA, GL_ACTIVE_RESOURCES}}) {
+        EXPECT_EQ(of_interface(interface, word), -99);
+        EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "as Mesa";
+    }
     name_ = 4711;
     EXPECT_EQ(of_interface(GL_UNIFORM, GL_ACTIVE_RESOURCES), -99);
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});

@@ -61,6 +61,25 @@ TEST_F(TransformFeedbackTest, ItBeginsWithAProgramAndItsBuffers) {
     EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
+TEST_F(TransformFeedbackTest, PlacesThatNoShaderNamesNeedNoBuffer) {
+    Executable& executable = *std::static_pointer_cast<Program>(share->glsl_objects.find(name_))->executable;
+    executable.capture_buffers = {{1, 28}};
+    gl().UseProgram(c, name_);
+    gl().BeginTransformFeedback(c, GL_POINTS);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    bind(1);
+    gl().BeginTransformFeedback(c, GL_POINTS);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    const auto& parts = c.captures->bound().active->parts();
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].buffer, nullptr);
+    EXPECT_EQ(parts[1].buffer, buffer(1));
+    gl().EndTransformFeedback(c);
+    executable.capture_buffers = {{~0u, 28}};
+    gl().BeginTransformFeedback(c, GL_POINTS);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "there is no such place";
+}
+
 TEST_F(TransformFeedbackTest, PlacesHavePartsOfBuffers) {
     bind(1);
     gl().BindBufferRange(c, GL_TRANSFORM_FEEDBACK_BUFFER, 1, buffers_[1], 8, 16);
