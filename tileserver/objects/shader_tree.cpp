@@ -50,8 +50,9 @@ std::string_view directive_of(std::string_view line) {
 /// or 0.
 std::size_t idle_condition(std::string_view source) {
     if (!directive_of(source.substr(0, source.find('\n'))).starts_with("if")) return 0;
+    constexpr int kDeepest = 16;  // so that conditions within conditions are not gone through again and again
     int within = 0;
-    for (std::size_t begin = 0; begin < source.size();) {
+    for (std::size_t begin = 0; begin < source.size() && within <= kDeepest;) {
         const std::size_t end = std::min(source.find('\n', begin), source.size());
         const std::string_view line = source.substr(begin, end - begin), word = directive_of(line);
         const bool blank = line.find_first_not_of(" \t\r") == line.npos;

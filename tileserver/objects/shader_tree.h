@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shaders as glslang parses them, and what its tree says of types and operators, for position_recogniser.h and
-// lookup_finder.h.
-// Any thread; a tree stays while its ParsedShaders does.
+// lookup_finder.h. Any thread; a tree stays while its ParsedShaders does.
 #pragma once
 
 #include <glslang/MachineIndependent/localintermediate.h>

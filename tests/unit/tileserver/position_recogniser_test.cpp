@@ -412,6 +412,10 @@ TEST(PositionRecogniser, ConditionsOnExtensionsAreTheDriversAffair) {
     EXPECT_FALSE(recognise("#ifdef GL_ARB_a\n#extension GL_ARB_a : enable /*\n#endif */\nint i;\n#endif\n" + end)
                      .program.known());
     EXPECT_FALSE(recognise("#ifdef GL_ARB_a\n" + end).program.known());
+    std::string deep;
+    for (int i = 0; i < 10000; ++i) deep += "#ifdef GL_ARB_a\n";
+    for (int i = 0; i < 10000; ++i) deep += "#endif\n";
+    EXPECT_FALSE(recognise(deep.substr(0, kMostShaderBytes - 100) + end).program.known());
     EXPECT_FALSE(recognise("#if defined(GL_EXT_gpu_shader4)\nfloat f;\n#endif\n" + end).program.known());
     EXPECT_FALSE(recognise("#define a(x) GL##x\n" + end).program.known());
     EXPECT_FALSE(recognise("/* never ends " + end).program.known());
